@@ -130,7 +130,9 @@ TEST_F(Feasible, SystemsStandBesideWhatIsPredicted) {
   const testing::ProgramResult result =
       systems({"--report", (log / "s.html").string(), "--csv", (log / "s.csv").string()});
   EXPECT_EQ(result.status, 0) << result.err;
-  for (const char* part : {"Navion", "flow on gap8", "flow on cortex-m4f", "levio on gap9"})
+  for (const char* part :
+       {"Navion", "flow on gap8", "flow on cortex-m4f", "levio on gap9",
+        "levio-no-imu on cortex-m7", "next on cortex-m7", "next on arm1176", "an FPGA"})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in:\n" << result.out;
   EXPECT_NE(base::read_text_file(log / "s.html").find("predicted here"), std::string::npos);
   // The prediction for LEVIO is that of the feasibility.
@@ -144,6 +146,36 @@ TEST_F(Feasible, SystemsStandBesideWhatIsPredicted) {
   testing::expect_refused(systems({"gap9"}), {"expected no platform, found 1"});
   testing::expect_refused(systems({"--profile", "next"}), {"leave out --profile"});
   testing::expect_refused(systems({"--csv", "x", "--report", "x"}), {"--report"});
+}
+
+/// A chip that cannot be is a row with its reason, and costs the others nothing.
+TEST_F(Feasible, AChipThatCannotBeIsARowWithItsReason) {
+  const traces::testing::TempFolder log;
+  const auto table = [&](std::vector<std::string> further) {
+    std::vector<std::string> words{"platforms", "feasibility", "--data", folder_.string(),
+                                   "--quiet",   "--frames",    "0:12",   "--json"};
+    words.insert(words.end(), further.begin(), further.end());
+    return testing::run_program(log.path(), words);
+  };
+  const testing::ProgramResult result = table(
+      {"-p", "cluster.workers=16", "-p", "cluster.max_workers=16", "-p", "cluster.l1.size=256KiB"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  bool runs = false;
+  const Json all = Json::parse(result.out);
+  for (const Json& row : all.at("rows"))
+    if (row.at("platform") == "gap9" && row.at("cores") == 16)
+      runs = row.at("failure").is_null() && row.at("front_end_ms").get<double>() > 0;
+  EXPECT_TRUE(runs) << result.out;
+  const testing::ProgramResult some = table({"-p", "cluster.workers=8"});
+  EXPECT_EQ(some.status, 0) << some.err;
+  bool refused = false;
+  const Json fewer = Json::parse(some.out);
+  for (const Json& row : fewer.at("rows"))
+    if (row.at("platform") == "arm1176")
+      refused =
+          row.at("failure").get<std::string>().find("cluster.max_workers") != std::string::npos;
+  EXPECT_TRUE(refused) << some.out;
+  testing::expect_refused(table({"arm1176", "-p", "cluster.workers=8"}), {"cluster.max_workers"});
 }
 
 /// The workload of all chips can be set, as that of a run.
@@ -165,6 +197,10 @@ TEST_F(Feasible, ARunOfALargeImageNamesTheCellsThatFillTheMemory) {
 TEST_F(Feasible, AChipOfMoreCoresThanTheOthersHasItsOwnWork) {
   const Feasibility twelve = on("gap9", 12, {"cluster.workers=12", "cluster.max_workers=12"});
   EXPECT_LT(twelve.front_end_ms, on("gap9", 8).front_end_ms);
+  const Feasibility sixteen =
+      on("gap9", 16, {"cluster.workers=16", "cluster.max_workers=16", "cluster.l1.size=256KiB"});
+  EXPECT_LT(sixteen.front_end_ms, twelve.front_end_ms);
+  EXPECT_TRUE(sixteen.fits());
   traces::testing::expect_input_error([] { on("gap9", 12); }, {"12", "8"});
 }
 

@@ -139,10 +139,14 @@ std::vector<Feasibility> rows_for(const PlatformsOptions& options, const RunnerO
   RunRequest request = make_chip_request(recording);
   std::vector<FeasibilityPoint> points;
   for (const std::string& name : names) {
-    const platform::ResolvedPlatform chip = platform::resolve_platform(name, overrides.chip);
-    const int workers = chip.config.cluster.workers;
-    points.push_back({name, chip, workers});
-    if (alone && workers > 1) points.push_back({name, chip, 1});
+    try {
+      const platform::ResolvedPlatform chip = platform::resolve_platform(name, overrides.chip);
+      const int workers = chip.config.cluster.workers;
+      points.push_back({name, chip, workers});
+      if (alone && workers > 1) points.push_back({name, chip, 1});
+    } catch (const InputError& error) {
+      points.push_back({name, {}, 0, error.what()});
+    }
   }
   request.data = data_folder(run, runner.progress);
   ProgressLine line(runner.progress);
@@ -163,6 +167,13 @@ std::string run_on(const std::string& platform, const RunOptions& options) {
                      shell_word(platform), options.profile, shell_word(options.data));
 }
 
+/// On the first chip that has the memory.
+std::vector<std::string> next_for(const std::vector<Feasibility>& rows, const RunOptions& options) {
+  for (const Feasibility& row : rows)
+    if (row.fits()) return {run_on(row.platform, options)};
+  return {};
+}
+
 void feasibility(const PlatformsOptions& options) {
   const RunOptions& run = options.run;
   run_study({"feasibility", "What a workload takes on chips", "chip", {}}, options.run,
@@ -171,7 +182,7 @@ void feasibility(const PlatformsOptions& options) {
               Answer answer{.parts = {fmt::format("{} on {}\n\n{}", run.profile,
                                                   printable(run.data), feasibility_table(rows))},
                             .conclusion = feasibility_conclusion(rows),
-                            .next = {run_on(rows.front().platform, run)},
+                            .next = next_for(rows, run),
                             .rows = feasibility_rows(rows)};
               for (const Feasibility& row : rows)
                 if (!options.names.empty() && !row.fits()) answer.is_met = false;
@@ -195,6 +206,10 @@ std::string without_small_chips(std::vector<Feasibility>& rows, bool by_name) {
     text += fmt::format("left out: {}\n", why);
   }
   std::erase_if(rows, [](const Feasibility& row) { return !row.fits(); });
+  if (rows.empty())
+    throw InputError(
+        "platforms stages: no chip can run the workload; leviosim platforms "
+        "feasibility says what each lacks");
   return text;
 }
 
@@ -208,7 +223,7 @@ void stages(const PlatformsOptions& options) {
                                         printable(options.run.data), stage_comparison(rows)),
                             left_out},
                   .conclusion = feasibility_conclusion(rows),
-                  .next = {run_on(rows.front().platform, options.run)},
+                  .next = next_for(rows, options.run),
                   .rows = stage_comparison_rows(rows)};
             });
 }

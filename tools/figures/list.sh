@@ -4,11 +4,11 @@
 # No figure shows the host's times, the commit, or anything else that differs from run to run.
 
 # README.md
-figure one-fpu
+figure what-if
 needs data
 after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
-shows 'leviosim replay recorded -p cluster.fpu.units=1 --tables stages --out one-fpu'
-cut 'table stage stage "kcycles, 8 cores" speed-up ms | rows ^EPnP ^8-point'
+shows 'leviosim whatif recorded cluster.fpu.units=1,2,8 cluster.icache.shared_size=8KiB'
+cut 'sed -n "/^in short/p;/^  *mean ms/,/^next/p" | grep -v "^next"'
 
 figure missed-deadlines
 needs data

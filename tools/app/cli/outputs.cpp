@@ -94,12 +94,12 @@ void add_json_option(CLI::App& command, bool& json) {
 }
 
 void print(const Printout& printout, const std::vector<ShownPath>& places) {
+  if (!printout.conclusion.empty()) print_piece(Kind::kept, printout.conclusion + '\n');
   for (const std::string& part : printout.parts)
     print_piece(printout.is_all ? Kind::document : Kind::details, part);
   for (const ShownPath& place : places)
     if (!printout.is_whole)
       print_piece(Kind::kept, fmt::format("{}: {}\n", place.label, printable(place.path)));
-  if (!printout.conclusion.empty()) print_piece(Kind::kept, printout.conclusion + '\n');
   if (!printout.next.empty())
     print_piece(Kind::next, fmt::format("next: {}\n", fmt::join(printout.next, "\n      ")));
   print_piece(Kind::commands, printout.ci_commands);

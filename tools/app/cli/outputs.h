@@ -34,8 +34,8 @@ struct Printout {
     is_whole = whole;
   }
 
-  /// What came out of it and why, in a sentence that begins with "verdict: " or "in short: ", and
-  /// command lines to try next: the end of the screen, which stays.
+  /// What came out of it and why, in a sentence that begins with "verdict: " or "in short: ": the
+  /// first line of the screen. And command lines to try next: its last ones. Both stay.
   Printout ending(std::string sentence, std::vector<std::string> commands) &&;
 
   std::vector<std::string> parts;
@@ -60,8 +60,8 @@ struct ShownPath {
   std::string path;
 };
 
-/// Shows it at the end of the command: the text, where results are unless the printout is whole,
-/// what came out, and what to do next.
+/// Shows it at the end of the command: what came out, the text, where results are unless the
+/// printout is whole, and what to do next.
 void print(const Printout& printout, const std::vector<ShownPath>& places = {});
 
 /// What the functions return: `document()` where it was asked for, else `lines()`, which may be a

@@ -156,10 +156,13 @@ RunResult run_on_chip(const RunRequest& request, const ProgressCallback& progres
     recorded.finish();
     return result;
   } catch (const work::MemoryOverflow& overflow) {
-    throw InputError(
-        fmt::format("{}; {} has more{}", overflow.what(),
-                    overflow.memory() == "L2" ? "a larger l2.size" : "a larger cluster.l1.size",
-                    advice_on_size(request)));
+    throw work::MemoryOverflow(
+        fmt::format(
+            "{}: {}; {} has more{} (leviosim platforms feasibility says what each chip lacks)",
+            request.platform.name, overflow.what(),
+            overflow.memory() == "L2" ? "a larger l2.size" : "a larger cluster.l1.size",
+            advice_on_size(request)),
+        overflow.memory());
   }
 }
 

@@ -132,9 +132,13 @@ double Feasibility::frame_ms() const {
 const traces::WorkTrace& FeasibilityStudy::work_among(int cores) {
   std::unique_ptr<traces::WorkTrace>& work = work_[cores];
   if (work) return *work;
+  // What is computed does not depend on the chip; each core needs a scratch of L1.
   std::vector<std::string> overrides;
-  if (cores > platform::load_platform(kRecordedOn).cluster.max_workers)
-    overrides.push_back(fmt::format("cluster.max_workers={}", cores));
+  const sim::ClusterConfig cluster = platform::load_platform(kRecordedOn).cluster;
+  if (cores > cluster.max_workers)
+    overrides = {
+        fmt::format("cluster.max_workers={}", cores),
+        fmt::format("cluster.l1.size={}", cluster.l1.size.count() * cores / cluster.max_workers)};
   RunRequest request = request_;
   request.platform = platform::resolve_platform(kRecordedOn, overrides);
   request.cores = cores;
@@ -148,9 +152,27 @@ const traces::WorkTrace& FeasibilityStudy::work_among(int cores) {
 
 std::vector<Feasibility> FeasibilityStudy::on(const std::vector<FeasibilityPoint>& points,
                                               const RunnerOptions& options) {
-  for (const FeasibilityPoint& point : points) work_among(point.cores);
   std::vector<Feasibility> rows(points.size());
-  run_all(points.size(), options, [&](std::size_t i) { rows[i] = on(points[i]); });
+  const auto may_fail = [&](std::size_t i, const auto& act) {
+    if (!rows[i].failure.empty()) return;
+    try {
+      act(points[i]);
+    } catch (const InputError& error) {
+      rows[i] = {};
+      rows[i].failure = error.what();
+    }
+    rows[i].platform = points[i].name;
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    rows[i].failure = points[i].failure;
+    rows[i].platform = points[i].name;
+    may_fail(i, [&](const FeasibilityPoint& point) { work_among(point.cores); });
+  }
+  run_all(points.size(), options, [&](std::size_t i) {
+    may_fail(i, [&](const FeasibilityPoint& point) { rows[i] = on(point); });
+  });
+  if (std::all_of(rows.begin(), rows.end(), [](const auto& row) { return !row.failure.empty(); }))
+    throw InputError(rows.front().failure);
   return rows;
 }
 
@@ -182,6 +204,7 @@ Feasibility FeasibilityStudy::on(const FeasibilityPoint& point) {
 }
 
 std::string memory_verdict(const Feasibility& row) {
+  if (!row.failure.empty()) return row.failure;
   if (row.fits()) return "fits";
   if (row.l1.fits()) return missing("L2", row.l2);
   if (row.l2.fits()) return missing("L1", row.l1);
@@ -192,13 +215,17 @@ std::string feasibility_table(const std::vector<Feasibility>& rows) {
   using F = const Feasibility&;
   // A star where the chip does not have the memory.
   const auto marked = [](double value, F f) {
+    if (!f.failure.empty()) return std::string(kNothing);
     return fmt::format("{:.1f}{}", value, f.fits() ? "" : "*");
   };
   std::string text = terminal_text(table_of(
       Columns<Feasibility>{
           {{"chip", kLeft}, [](F f) { return f.platform; }},
           {{"cores", kRight, 1}, [](F f) { return f.cores; }},
-          {{"MHz"}, [](F f) { return fmt::format("{:g}", megahertz(f.clock)); }},
+          {{"MHz"},
+           [](F f) {
+             return f.failure.empty() ? fmt::format("{:g}", megahertz(f.clock)) : kNothing;
+           }},
           {{"frame ms"}, [=](F f) { return marked(f.front_end_ms, f); }},
           {{"worst", kRight, 1}, [=](F f) { return marked(f.worst_ms, f); }},
           {{"published", kRight, 2}, [](F f) { return published(f); }},
@@ -213,7 +240,7 @@ std::string feasibility_table(const std::vector<Feasibility>& rows) {
       "the other, others both at once\n"
       "energy and mean power, with bands, at the rate that the chip keeps up with, at most the "
       "camera's\n";
-  if (std::any_of(rows.begin(), rows.end(), [](F f) { return !f.fits(); }))
+  if (std::any_of(rows.begin(), rows.end(), [](F f) { return f.failure.empty() && !f.fits(); }))
     text += "* if it had the memory: times and energy of the same work, as though all had fitted\n";
   return text;
 }
@@ -293,15 +320,16 @@ Table stage_comparison_rows(const std::vector<Feasibility>& rows) {
 
 Table feasibility_rows(const std::vector<Feasibility>& rows) {
   using F = const Feasibility&;
-  Columns<Feasibility> columns{
-      {{.key = "platform"}, [](F f) { return f.platform; }},
-      {{.key = "cores"}, [](F f) { return f.cores; }},
-      {{.key = "clock_hz"}, [](F f) { return f.clock; }},
-      {{.key = "front_end_ms"}, [](F f) { return f.front_end_ms; }},
-      {{.key = "worst_ms"}, [](F f) { return f.worst_ms; }},
-      {{.key = "published_ms"}, [](F f) { return published(f); }},
-      {{.key = "optimiser_ms"}, [](F f) { return f.optimiser_ms; }},
-      {{.key = "frames_per_s"}, [](F f) { return f.frames_per_second(); }}};
+  Columns<Feasibility> columns{{{.key = "platform"}, [](F f) { return f.platform; }},
+                               {{.key = "cores"}, [](F f) { return f.cores; }},
+                               {{.key = "clock_hz"}, [](F f) { return f.clock; }},
+                               {{.key = "front_end_ms"}, [](F f) { return f.front_end_ms; }},
+                               {{.key = "worst_ms"}, [](F f) { return f.worst_ms; }},
+                               {{.key = "published_ms"}, [](F f) { return published(f); }},
+                               {{.key = "optimiser_ms"}, [](F f) { return f.optimiser_ms; }},
+                               {{.key = "frames_per_s"}, [](F f) {
+                                  return f.failure.empty() ? Cell(f.frames_per_second()) : Cell();
+                                }}};
   const auto add_end = [&](const char* key, auto figure, auto end) {
     columns.push_back({{.key = key}, [=](F f) {
                          return f.*figure ? Cell(std::invoke(end, *(f.*figure)).count()) : Cell();
@@ -323,6 +351,7 @@ Table feasibility_rows(const std::vector<Feasibility>& rows) {
   };
   add_memory("l1", &Feasibility::l1);
   add_memory("l2", &Feasibility::l2);
+  columns.push_back({{.key = "failure"}, [](F f) { return f.failure; }});
   return table_of(columns, rows);
 }
 

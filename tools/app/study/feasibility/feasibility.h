@@ -37,6 +37,7 @@ struct StageTime {
 
 struct Feasibility {
   std::string platform;  ///< as asked for
+  std::string failure;   ///< why the work cannot be timed there; then there are no figures
   int cores = 0;
   Hertz clock;  ///< of the cluster
   MemoryVerdict l1;
@@ -51,7 +52,7 @@ struct Feasibility {
   std::optional<sim::Estimate<Joules>> energy_per_frame;
   std::optional<sim::Estimate<Watts>> power;
 
-  bool fits() const { return l1.fits() && l2.fits(); }
+  bool fits() const { return failure.empty() && l1.fits() && l2.fits(); }
   /// That the chip needs for a frame in the long run: two processors work at the same time.
   double frame_ms() const;
   double frames_per_second() const { return 1e3 / frame_ms(); }
@@ -62,6 +63,7 @@ struct FeasibilityPoint {
   std::string name;  ///< as asked for
   platform::ResolvedPlatform platform;
   int cores = 0;
+  std::string failure = {};  ///< why there is no such chip
 };
 
 /// Work of one workload over one flight, computed when it is first asked for and then kept, for
@@ -74,6 +76,7 @@ class FeasibilityStudy {
 
   /// @throws InputError for more cores than the platform serves
   Feasibility on(const FeasibilityPoint& point);
+  /// A row a point; of one that fails, its reason. @throws InputError if all fail
   std::vector<Feasibility> on(const std::vector<FeasibilityPoint>& points,
                               const RunnerOptions& options);
 
@@ -88,7 +91,8 @@ class FeasibilityStudy {
 // The table of `leviosim platforms feasibility`, with published figures beside the chips that have
 // some.
 
-/// "fits", or which memory is short of how much, and at which block.
+/// "fits", or which memory is short of how much, and at which block, or why the work cannot be
+/// timed.
 std::string memory_verdict(const Feasibility& row);
 
 /// A row per chip, and how to read it.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 
 #include "platform_models/loader/loader.h"
@@ -35,8 +36,13 @@ std::string in_milli(const std::optional<sim::Estimate<Unit>>& e) {
   return fmt::format("{} ({}–{})", text(e->value), text(e->low()), text(e->high()));
 }
 
+bool is_first(const SystemRow& row) {
+  return row.published.workloads.empty() || row.workload == row.published.workloads.front();
+}
+
 std::string model_of(const SystemRow& row) {
-  return row.here ? fmt::format("{} on {}", row.published.workload, row.published.platform) : "";
+  if (row.here) return fmt::format("{} on {}", row.workload, row.published.platform);
+  return row.published.absent;
 }
 
 RunRequest request_for(const PublishedSystem& system, const RunRequest& request) {
@@ -65,11 +71,9 @@ Prediction predict_flow(const PublishedSystem& system, const RunRequest& request
   return here;
 }
 
+/// @param study  of the workload
 Prediction predict_levio(const PublishedSystem& system, const RunRequest& request,
-                         const ProgressCallback& progress) {
-  RunRequest own = request;
-  own.profile = system.workload;
-  FeasibilityStudy study(own, progress);
+                         FeasibilityStudy& study) {
   const Feasibility found = study.on({system.platform, request.platform, request.cores});
   Prediction here;
   here.most_frames_per_s = found.frames_per_second();
@@ -83,9 +87,9 @@ Prediction predict_levio(const PublishedSystem& system, const RunRequest& reques
   return here;
 }
 
-const std::vector<std::string> kColumns{"system",       "year",     "class", "chip",
-                                        "frames_per_s", "power_mw", "bound", "workload",
-                                        "platform",     "set",      "source"};
+const std::vector<std::string> kColumns{"system",       "year",     "class",  "chip",
+                                        "frames_per_s", "power_mw", "bound",  "workload",
+                                        "platform",     "set",      "absent", "source"};
 enum Column : std::size_t {
   kSystem,
   kYear,
@@ -97,6 +101,7 @@ enum Column : std::size_t {
   kWorkload,
   kPlatform,
   kSet,
+  kAbsent,
   kSource
 };
 
@@ -105,6 +110,13 @@ std::optional<double> positive(const base::CsvRow& row, Column column) {
   const double value = row.number(column);
   if (!(value > 0)) row.fail(column, "expected a number above 0, or nothing");
   return value;
+}
+
+std::vector<std::string> words_of(std::string_view text) {
+  std::istringstream words{std::string(text)};
+  std::vector<std::string> all;
+  for (std::string word; words >> word;) all.push_back(word);
+  return all;
 }
 
 PublishedSystem system_from(const base::CsvRow& row) {
@@ -118,12 +130,14 @@ PublishedSystem system_from(const base::CsvRow& row) {
   const std::string bound(row.text(kBound));
   if (!bound.empty() && bound != "at most") row.fail(kBound, "expected 'at most', or nothing");
   system.is_bound = !bound.empty();
-  system.workload = row.text(kWorkload);
+  system.workloads = words_of(row.text(kWorkload));
   system.platform = row.text(kPlatform);
-  if (system.workload.empty() != system.platform.empty())
+  if (system.workloads.empty() != system.platform.empty())
     row.fail(kPlatform, "expected a workload and a platform, or neither");
-  std::istringstream words{std::string(row.text(kSet))};
-  for (std::string word; words >> word;) system.overrides.push_back(word);
+  system.overrides = words_of(row.text(kSet));
+  system.absent = row.text(kAbsent);
+  if (system.workloads.empty() == system.absent.empty())
+    row.fail(kAbsent, "expected a workload, or why there is none");
   system.source = row.text(kSource);
   if (system.name.empty() || system.source.empty()) row.fail("has no name or no source");
   return system;
@@ -136,16 +150,20 @@ std::string systems_table(const std::vector<SystemRow>& rows) {
   const auto here = [](auto of) {
     return [of](S s) { return s.here ? of(*s.here) : std::string(); };
   };
+  // What was published stands once.
+  const auto published = [](auto of) {
+    return [of](S s) { return is_first(s) ? of(s.published) : std::string(); };
+  };
   using P = const Prediction&;
+  using Q = const PublishedSystem&;
   const Columns<SystemRow> table{
-      {{"system", kLeft},
-       [](S s) { return fmt::format("{}, {}", s.published.name, s.published.year); }},
-      {{"class", kLeft, 3}, [](S s) { return s.published.kind; }},
-      {{"chip", kLeft, 2}, [](S s) { return s.published.chip; }},
-      {{"frames/s"}, [](S s) { return number(s.published.frames_per_s); }},
-      {{"mW"}, [](S s) { return number(s.published.power_mw, s.published.is_bound); }},
-      {{"mJ/frame"}, [](S s) { return number(s.published.frame_mj(), s.published.is_bound); }},
-      {{"here", kLeft, 2}, [](S s) { return model_of(s); }},
+      {{"system", kLeft}, published([](Q q) { return fmt::format("{}, {}", q.name, q.year); })},
+      {{"class", kLeft, 4}, published([](Q q) { return q.kind; })},
+      {{"chip", kLeft, 3}, published([](Q q) { return q.chip; })},
+      {{"frames/s"}, published([](Q q) { return number(q.frames_per_s); })},
+      {{"mW"}, published([](Q q) { return number(q.power_mw, q.is_bound); })},
+      {{"mJ/frame", kRight, 3}, published([](Q q) { return number(q.frame_mj(), q.is_bound); })},
+      {{"here", kLeft}, [](S s) { return model_of(s); }},
       {{"frames/s", kRight, 1}, here([](P p) { return number(p.frames_per_s); })},
       {{"mW"}, here([](P p) { return in_milli(p.power); })},
       {{"mJ/frame"}, here([](P p) { return in_milli(p.frame); })},
@@ -153,27 +171,30 @@ std::string systems_table(const std::vector<SystemRow>& rows) {
   std::string sources;
   std::string small;
   for (const SystemRow& row : rows) {
-    sources += fmt::format("  {}: {}\n", row.published.name, row.published.source);
+    if (is_first(row))
+      sources += fmt::format("  {}: {}\n", row.published.name, row.published.source);
     if (row.here && row.here->memory != "fits")
-      small += fmt::format("{} as though it fitted: {}\n", row.published.name, row.here->memory);
+      small += fmt::format("{} as though it fitted: {}\n", model_of(row), row.here->memory);
   }
   return terminal_text(table_of(table, rows)) +
          "published: of whole systems, as their authors define them; < is a bound\n"
          "here: what leviosim predicts for the chip alone, at that rate, with bands; most: what "
-         "the computing would allow. Where it is empty, the system is not modelled\n" +
+         "the computing would allow. Of a system that is not modelled, what its chip is\n" +
          small + "sources\n" + sources;
 }
 
 std::string systems_conclusion(const std::vector<SystemRow>& rows) {
   const SystemRow* least = nullptr;
   std::size_t modelled = 0;
+  std::size_t systems = 0;
   for (const SystemRow& row : rows) {
+    systems += is_first(row) ? 1 : 0;
     if (!row.here) continue;
-    ++modelled;
+    modelled += is_first(row) ? 1 : 0;
     if (row.here->frame && (least == nullptr || row.here->frame->value < least->here->frame->value))
       least = &row;
   }
-  std::string text = fmt::format("in short: {} of {} systems are modelled", modelled, rows.size());
+  std::string text = fmt::format("in short: {} of {} systems are modelled", modelled, systems);
   if (least != nullptr)
     text +=
         fmt::format("; {} takes {} mJ per frame", model_of(*least), in_milli(least->here->frame));
@@ -222,7 +243,7 @@ StudyPage systems_page(const std::vector<SystemRow>& rows) {
   std::vector<Spot> spots;
   for (const SystemRow& row : rows) {
     const PublishedSystem& p = row.published;
-    if (p.frames_per_s && p.power_mw)
+    if (p.frames_per_s && p.power_mw && is_first(row))
       spots.push_back({p.name,
                        p.is_bound ? "published, at most" : "published",
                        p.frames_per_s,
@@ -267,12 +288,20 @@ std::vector<SystemRow> predict_systems(const std::vector<PublishedSystem>& syste
                                        const RunRequest& request,
                                        const ProgressCallback& progress) {
   std::vector<SystemRow> rows;
+  std::map<std::string, FeasibilityStudy> studies;  // by workload
   for (const PublishedSystem& system : systems) {
-    rows.push_back({system, {}});
-    if (system.workload.empty()) continue;
-    const RunRequest own = request_for(system, request);
-    rows.back().here = system.workload == kFlowWorkload ? predict_flow(system, own, progress)
-                                                        : predict_levio(system, own, progress);
+    if (system.workloads.empty()) rows.push_back({system});
+    for (const std::string& workload : system.workloads) {
+      const RunRequest own = request_for(system, request);
+      if (workload == kFlowWorkload) {
+        rows.push_back({system, workload, predict_flow(system, own, progress)});
+        continue;
+      }
+      RunRequest levio = request;
+      levio.profile = workload;
+      FeasibilityStudy& study = studies.try_emplace(workload, levio, progress).first->second;
+      rows.push_back({system, workload, predict_levio(system, own, study)});
+    }
   }
   return rows;
 }

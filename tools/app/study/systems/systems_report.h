@@ -18,8 +18,9 @@ namespace leviosim::tools {
 
 // Low-power systems that estimate motion, as they were published:
 // tools/app/validation/published/systems.csv, which is part of the program. Columns: system, year,
-// class, chip, frames_per_s, power_mw, bound ("at most", or empty), workload (a profile of LEVIO or
-// "flow"; empty: not modelled), platform, set (overrides of the platform, apart by blanks), source.
+// class, chip, frames_per_s, power_mw, bound ("at most", or empty), workload (profiles of LEVIO,
+// apart by blanks, or "flow"; empty: not modelled), platform, set (overrides of the platform, apart
+// by blanks), absent (why it is not modelled), source.
 
 struct PublishedSystem {
   std::string name;
@@ -28,8 +29,9 @@ struct PublishedSystem {
   std::string chip;
   std::optional<double> frames_per_s;
   std::optional<double> power_mw;
-  bool is_bound = false;  ///< the power is at most that
-  std::string workload;   ///< empty: not modelled
+  bool is_bound = false;               ///< the power is at most that
+  std::vector<std::string> workloads;  ///< that are timed on its chip; none: not modelled
+  std::string absent;                  ///< why it is not modelled, "an FPGA"
   std::string platform;
   std::vector<std::string> overrides;
   std::string source;
@@ -60,9 +62,11 @@ struct Prediction {
   std::string memory;  ///< "fits", or what is missing
 };
 
+/// A workload on the chip of a system; of a system that is not modelled, what was published.
 struct SystemRow {
   PublishedSystem published;
-  std::optional<Prediction> here;  ///< none if the system is not modelled
+  std::string workload = {};
+  std::optional<Prediction> here = {};  ///< none if the system is not modelled
 };
 
 /// @param request   whose data, frames and seed all predictions are made with
@@ -74,7 +78,7 @@ std::vector<SystemRow> predict_systems(const std::vector<PublishedSystem>& syste
 /// Milli-units in a unit: power is shown in mW, energy in mJ.
 inline constexpr double kMilli = 1e3;
 
-/// A row per system, how to read it, and the sources.
+/// A row per system and workload, how to read it, and the sources.
 std::string systems_table(const std::vector<SystemRow>& rows);
 
 /// How many are modelled, and the one that takes the least energy per frame, in a sentence.

@@ -12,6 +12,7 @@
 #include "sim/base/error.h"
 #include "sim/base/text.h"
 #include "sim/energy/area.h"
+#include "sim/work/arena.h"
 #include "sim/work/offload_regions.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/report/statistics.h"
@@ -53,7 +54,7 @@ void take_costs(VariantResult& result, const RunResult& run) {
   result.is_whole_area = chip.known;
 }
 
-VariantResult timed(const std::string& name, const ResolvedPoint& point) {
+VariantResult timed(const Variant& variant, const ResolvedPoint& point) {
   RunRequest request = point.request;
   request.time_bands = TimeBandsOf::slowest_frame;
   request.on_one_core = false;
@@ -61,7 +62,8 @@ VariantResult timed(const std::string& name, const ResolvedPoint& point) {
   const RunResult run = point.trace != nullptr ? replay(*point.trace, request, progress).run
                                                : simulate(request, progress);
   VariantResult result;
-  result.name = name;
+  result.name = variant.name;
+  result.raised = variant.raised;
   result.is_run = point.trace == nullptr;
   result.frames = run.frames.size();
   result.period_ms = static_cast<double>(run.frame_period_ns) * 1e-6;
@@ -69,6 +71,7 @@ VariantResult timed(const std::string& name, const ResolvedPoint& point) {
   const RunFigures figures = figures_of(run);
   result.verdicts = verdicts(figures);
   result.unused = unused_accelerators(figures);
+  result.l1_peak = figures.value("memory.l1.peak").value_or(0);
   take_costs(result, run);
   result.parts = {cycle_parts(run), request.cores, static_cast<double>(run.frames.size()),
                   run.cluster_clock};
@@ -135,14 +138,23 @@ std::optional<Variant> with_accelerators_of(const std::string& name,
   return variant;
 }
 
-Variant with_cores(int workers, int most) {
-  Variant variant{fmt::format("cluster.workers={}", workers),
-                  {{"platform.cluster.workers", fmt::format("{}", workers)}}};
-  if (workers > most) {
-    variant.name += fmt::format(",cluster.max_workers={}", workers);
-    variant.settings["platform.cluster.max_workers"] = fmt::format("{}", workers);
-  }
-  return variant;
+constexpr const char* kWorkers = "platform.cluster.workers";
+constexpr const char* kEventUnit = "platform.cluster.max_workers";
+constexpr const char* kL1Size = "platform.cluster.l1.size";
+constexpr const char* kBase = "platform.isa.base";
+
+void raise(Variant& variant, const char* key, const std::string& value) {
+  variant.settings[key] = value;
+  variant.raised.push_back(
+      fmt::format("{}={}", std::string_view(key).substr(kChipSettings.size()), value));
+}
+
+bool has_values_of(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform& b) {
+  return std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(),
+                    b.parameters.end(),
+                    [](const platform::Parameter& x, const platform::Parameter& y) {
+                      return x.path == y.path && x.value == y.value && x.unit == y.unit;
+                    });
 }
 
 }  // namespace
@@ -177,6 +189,16 @@ void WhatIf::expect_known(const std::string& change, const SweepRow& settings) {
       continue;
     }
     const std::string path = name.substr(kChipSettings.size());  // as it was typed
+    if (path.starts_with("workload."))
+      throw InputError(fmt::format(
+          "{}: changes what is computed, not the chip; expected a key of the chip (leviosim run -p "
+          "{} computes it, leviosim compare sets both beside each other)",
+          change, change));
+    if (path == "technology")
+      throw InputError(
+          fmt::format("{}: scaling between technologies is not modelled; expected numbers of "
+                      "another chip, such as area.…, energy.… and supply.…",
+                      change));
     if (schema.find(path) == platform::Schema::kNone && path != platform::kBasePath)
       throw InputError(
           fmt::format("{}: unknown key{}", change, base::did_you_mean(path, schema.paths())));
@@ -213,8 +235,35 @@ std::vector<Variant> WhatIf::variants(const std::string& change) {
           all.push_back(std::move(next));
         }
     }
-  for (const Variant& variant : all) expect_known(change, variant.settings);
+  for (Variant& variant : all) {
+    expect_known(change, variant.settings);
+    name_chip(variant);
+    raise_event_unit(variant);
+  }
   return all;
+}
+
+void WhatIf::name_chip(Variant& variant) {
+  const SweepInputs::Trace& trace = inputs_.trace(trace_, {trace_});
+  const std::string& name = trace.work->info().platform;
+  const std::vector<std::string> known = platform::platform_names();
+  if (variant.settings.count(kBase) == 0 || variant.settings.count("platform") > 0 ||
+      std::find(known.begin(), known.end(), name) == known.end() ||
+      !has_values_of(plan_.reference->resolve({}), inputs_.platform(name, {trace_}).resolve({})))
+    return;
+  variant.settings["platform"] = name;
+}
+
+void WhatIf::raise_event_unit(Variant& variant) {
+  const auto workers = variant.settings.find(kWorkers);
+  if (workers == variant.settings.end() || variant.settings.count(kEventUnit) > 0) return;
+  const auto chip = variant.settings.find("platform");
+  platform::PlatformFile& file = chip == variant.settings.end()
+                                     ? *plan_.reference
+                                     : inputs_.platform(chip->second, {variant.name});
+  const std::optional<double> number = platform::parse_number(workers->second);
+  if (number && *number > file.resolve({}).config.cluster.max_workers)
+    raise(variant, kEventUnit, workers->second);
 }
 
 ResolvedPoint WhatIf::resolved(const Variant& variant) {
@@ -259,6 +308,36 @@ ResolvedPoint WhatIf::resolved(const Variant& variant) {
   return resolve(plan_, run, inputs_, where);
 }
 
+VariantResult WhatIf::with_larger_l1(Variant variant) {
+  constexpr std::int64_t kKiB = 1024;
+  constexpr std::int64_t kStep = 16 * kKiB;
+  const auto result = [&](std::int64_t bytes) {
+    Variant larger = variant;
+    raise(larger, kL1Size, fmt::format("{}KiB", bytes / kKiB));
+    std::optional<ResolvedPoint> point;
+    {
+      const std::lock_guard<std::mutex> lock(resolving_);
+      point = resolved(larger);
+    }
+    return timed(larger, *point);
+  };
+  std::int64_t size = 0;
+  {
+    const std::lock_guard<std::mutex> lock(resolving_);
+    size = resolved({}).request.platform.config.cluster.l1.size.count();
+  }
+  VariantResult twice = result(2 * size);
+  const auto peak = static_cast<std::int64_t>(twice.l1_peak);
+  for (std::int64_t least = std::max(size, (peak - 1) / kStep * kStep) + kStep; least < 2 * size;
+       least += kStep)
+    try {
+      return result(least);
+    } catch (const work::MemoryOverflow&) {
+      continue;  // what was aligned and split among cores took more than the sum
+    }
+  return twice;
+}
+
 std::vector<VariantResult> WhatIf::results(const std::vector<Variant>& variants,
                                            const RunnerOptions& options) {
   std::vector<Variant> all{{kAsItIs, {}}};
@@ -271,6 +350,7 @@ std::vector<VariantResult> WhatIf::results(const std::vector<Variant>& variants,
     } catch (const InputError& error) {
       if (i == 0) throw;
       results[i].name = all[i].name;
+      results[i].raised = all[i].raised;
       results[i].failure = error.what();
     }
   };
@@ -279,7 +359,17 @@ std::vector<VariantResult> WhatIf::results(const std::vector<Variant>& variants,
     may_fail(i, [&] { points[i] = resolved(all[i]); });
   }
   run_all(all.size(), options, [&](std::size_t i) {
-    if (points[i]) may_fail(i, [&] { results[i] = timed(all[i].name, *points[i]); });
+    if (!points[i]) return;
+    may_fail(i, [&] {
+      try {
+        results[i] = timed(all[i], *points[i]);
+      } catch (const work::MemoryOverflow& full) {
+        const bool has_more_cores =
+            all[i].settings.count(kWorkers) > 0 && all[i].settings.count(kL1Size) == 0;
+        if (!has_more_cores || full.memory() == "L2") throw;
+        results[i] = with_larger_l1(all[i]);
+      }
+    });
   });
   return results;
 }
@@ -304,9 +394,11 @@ std::vector<Variant> WhatIf::standard_variants() {
   const sim::ClusterConfig& team = chip.config.cluster;
   if (!again_.empty() && team.workers > 1)
     for (const int workers : {team.workers / 2, team.workers * 2})
-      all.push_back(with_cores(workers, team.max_workers));
+      all.push_back(
+          {fmt::format("cluster.workers={}", workers), {{kWorkers, fmt::format("{}", workers)}}});
   for (const std::string& name : platform::platform_names())
     if (auto variant = with_accelerators_of(name, chip)) all.push_back(*std::move(variant));
+  for (Variant& variant : all) raise_event_unit(variant);
   return all;
 }
 

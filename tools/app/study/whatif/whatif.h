@@ -4,6 +4,7 @@
 // Left out: what another timing changes in the computation of a replay (../../run/trace_source.h).
 #pragma once
 
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,13 +28,16 @@ inline constexpr std::string_view kChipSettings = "platform.";
 struct Variant {
   std::string name;   ///< as asked for: "cluster.fpu.units=2"
   SweepRow settings;  ///< "platform", "platform.…"; the rest is the run's
+  std::vector<std::string> raised =
+      {};  ///< "cluster.max_workers=16": what the change needs besides
 };
 
 /// What became of a variant.
 struct VariantResult {
   std::string name;
-  std::string failure;  ///< why it cannot run; then there are no figures
-  FrameTimes times;     ///< of frames by themselves, without the time they wait for the one before
+  std::vector<std::string> raised;  ///< as of the variant
+  std::string failure;              ///< why it cannot run; then there are no figures
+  FrameTimes times;  ///< of frames by themselves, without the time they wait for the one before
   std::size_t frames = 0;
   double period_ms = 0;  ///< of the camera
   Verdicts verdicts;
@@ -41,6 +45,7 @@ struct VariantResult {
   std::optional<double> area_mm2;
   bool is_whole_area = true;  ///< else parts are unknown
   bool is_run = false;        ///< computed again, not replayed
+  double l1_peak = 0;         ///< [bytes]
   TimedParts parts;
   std::vector<std::string> unused;  ///< accelerators that served nothing: "hamming of the cluster"
 
@@ -59,7 +64,8 @@ class WhatIf {
   WhatIf(SweepInputs& inputs, std::string trace, SweepRow again);
 
   /// "cluster.fpu.units=2,4,8": three; "gap9-eigen", "mine.yaml"; "gap9:cluster.workers=4";
-  /// "A=1,B=2": both at once. @throws InputError for names that do not exist
+  /// "A=1,B=2": both at once. What a number of cores needs besides is raised with it.
+  /// @throws InputError for names that do not exist
   std::vector<Variant> variants(const std::string& change);
   /// A standard set, made of what the platform has: each resource halved and doubled, both clocks
   /// halved, other numbers of cores, accelerators of built-in platforms.
@@ -71,21 +77,27 @@ class WhatIf {
 
  private:
   void expect_known(const std::string& change, const SweepRow& settings);
+  /// A recording holds its chip without the file that the chip extends. Where that is a built-in
+  /// chip without changes, a change of what it extends is one of the built-in chip.
+  void name_chip(Variant& variant);
+  /// An event unit for as many cores as are asked for.
+  void raise_event_unit(Variant& variant);
   ResolvedPoint resolved(const Variant& variant);
+  /// More cores need more of L1: the same with the least that holds the work, in steps.
+  /// @throws InputError if twice the size does not hold it either
+  VariantResult with_larger_l1(Variant variant);
 
   SweepInputs& inputs_;
   std::string trace_;
   SweepRow again_;
   SweepPlan plan_;
+  std::mutex resolving_;
 };
 
 // What if, for people and programs: text of 80 columns, CSV, and a page with bars.
 
 /// A bar a variant: the time of a mean frame, and its energy.
 std::string whatif_bars(const std::vector<VariantResult>& results);
-
-/// In one line, why a variant takes another time: "waiting for code -11.2 ms, most in EPnP RANSAC".
-std::string reason_of(const VariantResult& base, const VariantResult& variant);
 
 Table whatif_rows(const std::vector<VariantResult>& results);
 

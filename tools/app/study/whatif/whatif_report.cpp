@@ -3,9 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -21,189 +19,10 @@
 #include "tools/app/run/run_session.h"
 #include "tools/app/study/study.h"
 #include "tools/app/study/whatif/whatif.h"
-#include "tools/app/table/terminal_table.h"
+#include "tools/app/study/whatif/whatif_text.h"
 
 namespace leviosim::tools {
 namespace {
-
-constexpr int kWidth = 80;
-constexpr int kIndent = 4;
-constexpr int kNameWidth = 28;
-/// Per cent of the time; less is no change.
-constexpr double kNoChange = 0.05;
-/// Of the whole difference: a cause with less goes without saying.
-constexpr double kLeastCause = 0.2;
-
-std::optional<double> percent(double value, double base) {
-  if (base == 0) return std::nullopt;
-  return 100 * (value / base - 1);
-}
-
-struct Changes {
-  double time = 0;
-  std::optional<double> energy;
-  std::optional<double> area;
-};
-
-Changes changes_of(const VariantResult& base, const VariantResult& variant) {
-  Changes changes{percent(variant.mean_ms(), base.mean_ms()).value_or(0), {}, {}};
-  if (base.energy_mj && variant.energy_mj)
-    changes.energy = percent(variant.energy_mj->value, base.energy_mj->value);
-  if (base.area_mm2 && variant.area_mm2) changes.area = percent(*variant.area_mm2, *base.area_mm2);
-  return changes;
-}
-
-std::string wrapped(const std::string& text) {
-  return std::string(kIndent, ' ') + wrap_words(text, kIndent, kWidth) + '\n';
-}
-
-std::string below(const VariantResult& base, const VariantResult& variant) {
-  std::string text;
-  if (display_width(printable(variant.name)) > kNameWidth) text = printable(variant.name) + ": ";
-  if (!variant.failure.empty()) return wrapped(text + printable(variant.failure));
-  const Changes changes = changes_of(base, variant);
-  text += std::abs(changes.time) < kNoChange ? "same time"
-                                             : fmt::format("{:+.1f} % time", changes.time);
-  if (changes.energy) text += fmt::format(", {:+.1f} % energy", *changes.energy);
-  if (!variant.is_whole_area)
-    text += ", area of some parts unknown";
-  else if (changes.area)
-    text += fmt::format(", {:+.1f} % area", *changes.area);
-  return wrapped(text + ": " + reason_of(base, variant));
-}
-
-std::string number(std::optional<double> value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : "–";
-}
-
-std::vector<Cell> cells_of(const VariantResult& result) {
-  const std::string name = shortened(printable(result.name), kNameWidth);
-  if (!result.failure.empty()) return {name, "–", "–", "–", "cannot run", "–", "–"};
-  std::optional<double> energy;
-  if (result.energy_mj) energy = result.energy_mj->value;
-  return {name,
-          number(result.mean_ms(), 2),
-          number(result.times.p99_ns.value * 1e-6, 2),
-          number(result.times.sustainable_rate(), 1),
-          result.verdict(),
-          number(energy, 3),
-          (result.is_whole_area ? "" : ">") + number(result.area_mm2, 2)};
-}
-
-/// Rows with a line of reasons below each but the first.
-std::string table_of(const VariantResult& base, const std::vector<const VariantResult*>& rows) {
-  Table table({{"", kLeft},
-               {"mean ms", kRight},
-               {"p99 ms", kRight, 2},
-               {"fps", kRight, 3},
-               {"verdict", kLeft},
-               {"mJ", kRight, 1},
-               {"mm2", kRight, 1}});
-  table.add(cells_of(base));
-  for (const VariantResult* row : rows) table.add(cells_of(*row));
-  const std::string lines = terminal_text(table, std::min(table_width(), kWidth));
-  std::string text;
-  std::size_t begin = 0;
-  constexpr std::size_t kBefore = 3;  // titles, rule, the run as it is
-  for (std::size_t line = 0; begin < lines.size(); ++line) {
-    const std::size_t end = lines.find('\n', begin) + 1;
-    text += lines.substr(begin, end - begin);
-    if (line >= kBefore) text += below(base, *rows[line - kBefore]);
-    begin = end;
-  }
-  return text;
-}
-
-/// Time gained per area. What needs no area comes first, what needs an unknown one last; of both
-/// the fastest first.
-std::pair<int, double> worth(const VariantResult& base, const VariantResult& variant) {
-  const Changes changes = changes_of(base, variant);
-  if (!changes.area || !variant.is_whole_area) return {0, -changes.time};
-  return *changes.area > 0 ? std::pair(1, -changes.time / *changes.area)
-                           : std::pair(2, -changes.time);
-}
-
-std::string list_of(const std::string& title, const std::vector<std::string>& items) {
-  if (items.empty()) return {};
-  return title + '\n' + wrapped(fmt::format("{}", fmt::join(items, "; ")));
-}
-
-/// In a sentence: the variant that cannot run, else the fastest.
-std::string whatif_conclusion(const std::vector<VariantResult>& results) {
-  const VariantResult* fastest = nullptr;
-  for (std::size_t i = 1; i < results.size(); ++i) {
-    if (!results[i].failure.empty()) continue;
-    if (fastest == nullptr || results[i].mean_ms() < fastest->mean_ms()) fastest = &results[i];
-  }
-  if (fastest == nullptr) return "verdict: none of the variants can run";
-  if (changes_of(results.front(), *fastest).time > -kNoChange)
-    return fmt::format("in short: no variant is faster than {:.2f} ms", results.front().mean_ms());
-  return fmt::format("in short: fastest is {}: {:.2f} ms instead of {:.2f}",
-                     printable(fastest->name), fastest->mean_ms(), results.front().mean_ms());
-}
-
-/// A row a variant with its reason below; the first is the run as it is.
-std::string whatif_table(const std::vector<VariantResult>& results) {
-  std::vector<const VariantResult*> rows;
-  for (std::size_t i = 1; i < results.size(); ++i) rows.push_back(&results[i]);
-  return table_of(results.front(), rows);
-}
-
-/// " (+1.4 % area, +5.5 % energy)"; what is not known is left out.
-std::string price_text(const Changes& changes) {
-  std::vector<std::string> parts;
-  if (changes.area) parts.push_back(fmt::format("{:+.1f} % area", *changes.area));
-  if (changes.energy) parts.push_back(fmt::format("{:+.1f} % energy", *changes.energy));
-  return parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, ", "));
-}
-
-/// The same ranked: time gained per area and per energy; what changes nothing, and what cannot be.
-std::string advice_text(const std::vector<VariantResult>& results) {
-  const VariantResult& base = results.front();
-  std::vector<const VariantResult*> gains;
-  std::vector<std::string> spared, same, wasted, slower, impossible;
-  for (std::size_t i = 1; i < results.size(); ++i) {
-    const VariantResult& result = results[i];
-    if (!result.failure.empty()) {
-      impossible.push_back(
-          fmt::format("{} ({})", printable(result.name), printable(result.failure)));
-      continue;
-    }
-    const Changes changes = changes_of(base, result);
-    if (changes.time <= -kNoChange)
-      gains.push_back(&result);
-    else if (changes.time >= kNoChange)
-      slower.push_back(fmt::format("{} {:+.1f} %", result.name, changes.time));
-    else if (changes.area.value_or(0) < 0)
-      spared.push_back(result.name + price_text(changes));
-    else if (changes.area.value_or(0) > 0 || changes.energy.value_or(0) >= kNoChange)
-      wasted.push_back(result.name + price_text(changes));
-    else
-      same.push_back(result.name);
-  }
-  std::stable_sort(gains.begin(), gains.end(), [&](const VariantResult* a, const VariantResult* b) {
-    return worth(base, *a) > worth(base, *b);
-  });
-  std::string text = table_of(base, gains);
-  const auto frugal = [&](const VariantResult* a, const VariantResult* b) {
-    const auto of = [&](const VariantResult& r) {
-      return changes_of(base, r).energy.value_or(std::numeric_limits<double>::max());
-    };
-    return of(*a) < of(*b);
-  };
-  std::vector<const VariantResult*> by_energy = gains;
-  std::stable_sort(by_energy.begin(), by_energy.end(), frugal);
-  std::vector<std::string> least;
-  for (const VariantResult* r : by_energy)
-    if (const auto energy = changes_of(base, *r).energy; energy && least.size() < 3)
-      least.push_back(fmt::format("{} {:+.1f} %", r->name, *energy));
-  text += list_of("\nBy time gained per area, unknown areas last. Least energy per frame:", least);
-  text += list_of("Costs no time:", spared);
-  text += list_of("Gains no time, but costs:", wasted);
-  text += list_of("Changes nothing:", same);
-  text += list_of("Takes longer:", slower);
-  return text + list_of("Cannot run:", impossible);
-}
 
 /// @param results  outlive the table
 Columns<VariantResult> variant_columns(const std::vector<VariantResult>& results) {
@@ -221,7 +40,10 @@ Columns<VariantResult> variant_columns(const std::vector<VariantResult>& results
   const auto milliseconds = [](const char* title, const char* key) -> Head {
     return {.title = title, .key = key, .decimals = 4, .unit = "ms", .is_banded = true};
   };
-  return {{{.title = "variant", .key = "variant", .is_setup = true}, [](R r) { return r.name; }},
+  const auto name = [](R r) {
+    return r.raised.empty() ? r.name : fmt::format("{},{}", r.name, fmt::join(r.raised, ","));
+  };
+  return {{{.title = "variant", .key = "variant", .is_setup = true}, name},
           {milliseconds("mean frame", "frame_mean_ms"), time(&FrameTimes::mean_ns)},
           {milliseconds("frame time of 99 %", "frame_p99_ms"), time(&FrameTimes::p99_ns)},
           {milliseconds("worst frame", "frame_worst_ms"), time(&FrameTimes::worst_ns)},
@@ -337,12 +159,17 @@ std::string heading(const std::string& run, const traces::WorkTraceInfo& info, i
                      printable(info.platform), info.cores);
 }
 
-/// Command lines that say more.
-std::vector<std::string> after(const std::string& run, const std::vector<std::string>& changes) {
+/// Command lines that say more, each of which works.
+std::vector<std::string> after(const std::string& run, const std::vector<std::string>& changes,
+                               const std::vector<VariantResult>& results) {
   if (run.empty()) return {"leviosim run --record --out mine", "leviosim whatif mine"};
-  for (const std::string& change : changes)
-    if (change.find('=') != std::string::npos && change.find_first_of(",:") == std::string::npos)
-      return {fmt::format("leviosim compare {} -p {}", shell_word(run), shell_word(change))};
+  const bool can_run = !changes.empty() && results.size() == 2 && results.back().failure.empty() &&
+                       results.back().raised.empty() && !results.back().is_run &&
+                       !changes.front().starts_with("isa.base=");  // of the chip's own file
+  if (can_run && changes.front().find('=') != std::string::npos &&
+      changes.front().find(':') == std::string::npos &&
+      changes.front().find(',') == std::string::npos)
+    return {fmt::format("leviosim compare {} -p {}", shell_word(run), shell_word(changes.front()))};
   return {fmt::format("leviosim whatif {} --report whatif.html", shell_word(run))};
 }
 
@@ -370,8 +197,8 @@ Answer answer(const WhatIfOptions& typed, const RunnerOptions& runner, const Wor
   const traces::WorkTrace& trace = *inputs.trace(asked.name, {asked.name}).work;
   const std::string head = heading(asked.name, trace.info(), trace.frames());
   Answer answer{.parts = {head + (advises ? advice_text(results) : whatif_table(results))},
-                .conclusion = whatif_conclusion(results),
-                .next = after(name, changes),
+                .conclusion = advises ? advice_conclusion(results) : whatif_conclusion(results),
+                .next = after(name, changes, results),
                 .rows = whatif_rows(results)};
   answer.page.title = "What if";
   answer.page.summary = head;
@@ -400,21 +227,6 @@ const Study kWhatIf{
     {"leviosim whatif recorded cluster.fpu.units=2,4,8 gap9-eigen", "leviosim whatif recorded"}};
 
 }  // namespace
-
-std::string reason_of(const VariantResult& base, const VariantResult& variant) {
-  if (!variant.failure.empty()) return variant.failure;
-  const double difference = variant.mean_ms() - base.mean_ms();
-  std::vector<std::string> parts;
-  if (std::abs(difference) >= kNoChange * 1e-2 * base.mean_ms())
-    for (const MainCause& cause : main_causes(base.parts, variant.parts)) {
-      if (parts.size() == 2 || std::abs(cause.ms) < kLeastCause * std::abs(difference)) break;
-      parts.push_back(cause_text(cause));
-    }
-  if (std::string unused = unused_text(base.unused, variant.unused); !unused.empty())
-    parts.push_back(std::move(unused));
-  if (parts.empty()) return "no frame waits for it";
-  return fmt::format("{}", fmt::join(parts, "; "));
-}
 
 std::string whatif_bars(const std::vector<VariantResult>& results) {
   constexpr double kBar = 34;
