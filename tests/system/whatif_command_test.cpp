@@ -170,7 +170,7 @@ TEST_F(WhatIfCommand, AdvisesTheLargestLever) {
   std::string line;
   std::vector<std::string> lines;
   while (std::getline(in, line)) {
-    if (line.find(path("run")) == std::string::npos) {
+    if (line.find(path("run")) == std::string::npos && line.rfind("in short: ", 0) != 0) {
       EXPECT_LE(display_width(line), 80) << line;
     }
     lines.push_back(line);

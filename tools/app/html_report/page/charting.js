@@ -106,7 +106,27 @@ const barNames = {
   },
 };
 
-Chart.register(limitLines, whiskers, barNames);
+/** A text at the end of each horizontal bar: [text]. */
+const barTexts = {
+  id: 'barTexts',
+  afterDatasetsDraw(chart, _, options) {
+    const {ctx} = chart;
+    ctx.save();
+    ctx.font = `11px ${Chart.defaults.font.family}`;
+    ctx.fillStyle = style('--ink');
+    ctx.textBaseline = 'middle';
+    chart.getDatasetMeta(0).data.forEach((bar, index) => {
+      const text = (options.texts || [])[index];
+      if (!text) return;
+      const {x, base, y} = bar.getProps(['x', 'base', 'y'], true);
+      ctx.textAlign = x < base ? 'right' : 'left';
+      ctx.fillText(text, x + (x < base ? -6 : 6), y);
+    });
+    ctx.restore();
+  },
+};
+
+Chart.register(limitLines, whiskers, barNames, barTexts);
 
 function drawAll() {
   themeDefaults();

@@ -130,22 +130,34 @@ function curveFigure(study, yName) {
   });
 }
 
+/** By how much each row differs from the first: differences would not show in whole bars. */
 function barFigure(study, name) {
   const column = study.columns.find((c) => c.name === name);
   const labels = study.table[study.bars.of];
   const values = study.table[name];
+  const [base] = values;
+  const changes = values.map((value) => (value === null || !base ? null : 100 * (value / base - 1)));
+  const better = (change) => (column.more ? change > 0 : change < 0);
+  const sign = (change) => `${change > 0 ? '+' : ''}${change.toFixed(1)} %`;
+  const unit = column.unit ? ` ${column.unit}` : '';
+  const texts = values.map((value, i) => {
+    if (value === null) return '';
+    return i === 0 ? `${numberText(value)}${unit}` :
+                     `${sign(changes[i])}, ${numberText(value)}${unit}`;
+  });
+  const title = `change of ${column.title}, %`;
   return chartFigure({
     title: capital(column.title),
-    hint: 'A bar for each row. Rows without a bar cannot run, or have no such figure.',
+    hint: `Change beside ${labels[0]}. A row without a bar and a value cannot run, or has no such figure.`,
     height: () => 60 + 23 * labels.length,
     config: () => ({
       type: 'bar',
       data: {
         labels,
         datasets: [{
-          label: axisTitle(column),
-          data: values,
-          backgroundColor: labels.map((_, i) => (i === 0 ? style('--soft') : paletteColour(1))),
+          label: title,
+          data: changes,
+          backgroundColor: changes.map((c) => style(better(c) ? '--good' : '--bad')),
           barPercentage: 0.85,
           categoryPercentage: 0.95
         }]
@@ -153,14 +165,15 @@ function barFigure(study, name) {
       options: {
         indexAxis: 'y',
         scales: {
-          x: {title: {display: true, text: axisTitle(column)}, beginAtZero: true},
+          x: {title: {display: true, text: title}, grace: '30%', suggestedMin: -1, suggestedMax: 1},
           y: stackedRows()
-        }
+        },
+        plugins: {barTexts: {texts}}
       },
     }),
     table: () => ({
-      columns: [{title: study.bars.of, text: true}, {title: axisTitle(column)}],
-      rows: labels.map((label, i) => [label, values[i]])
+      columns: [{title: study.bars.of, text: true}, {title: axisTitle(column)}, {title}],
+      rows: labels.map((label, i) => [label, values[i], changes[i]])
     }),
   });
 }
@@ -302,7 +315,7 @@ function studyBox({good, mark, sentence, lines}) {
   const [kind, sign] = good === null ? ['', ''] : good ? ['fits', '✓ '] : ['fails', '✗ '];
   return element(
       'div', {class: `card verdict ${kind}`}, element('span', {class: 'mark'}, sign + mark),
-      element('p', {class: 'sentence'}, sentence),
+      element('p', {class: 'sentence'}, capital(sentence)),
       ...lines.map((line) => element('p', {class: 'soft'}, line)));
 }
 

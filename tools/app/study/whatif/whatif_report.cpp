@@ -200,7 +200,10 @@ Answer answer(const WhatIfOptions& typed, const RunnerOptions& runner, const Wor
                 .conclusion = advises ? advice_conclusion(results) : whatif_conclusion(results),
                 .next = after(name, changes, results),
                 .rows = whatif_rows(results)};
-  answer.page.title = "What if";
+  answer.page.title = fmt::format("What if: {} on {}", trace.info().profile, trace.info().platform);
+  const std::string& said = answer.conclusion;  // behind "in short: "
+  answer.page.boxes.push_back(
+      {{}, advises ? "Advice" : "Answer", said.substr(said.find(": ") + 2), {}});
   answer.page.summary = head;
   answer.page.bars = {"variant", {"frame_mean_ms", "energy_mj", "area_mm2"}};
   answer.page.x = "area_mm2";
