@@ -189,9 +189,15 @@ std::string reason_of(const VariantResult& base, const VariantResult& variant) {
   if (!variant.failure.empty()) return variant.failure;
   const double difference = variant.mean_ms() - base.mean_ms();
   std::vector<std::string> parts;
+  double explained = 0;
   if (std::abs(difference) >= kNoChange * 1e-2 * base.mean_ms())
     for (const MainCause& cause : main_causes(base.parts, variant.parts)) {
-      if (parts.size() == 2 || std::abs(cause.ms) < kLeastCause * std::abs(difference)) break;
+      // One that is small goes unsaid, unless what was said does not add up without it.
+      const bool is_small = std::abs(cause.ms) < kLeastCause * std::abs(difference);
+      const bool adds_up =
+          std::abs(difference - explained) < kLeastCause / 2 * std::abs(difference);
+      if (parts.size() == 2 || (is_small && (parts.empty() || adds_up))) break;
+      explained += cause.ms;
       parts.push_back(cause_text(cause));
     }
   if (std::string unused = unused_text(base.unused, variant.unused); !unused.empty())
