@@ -70,7 +70,7 @@ void check_terminal(const tools::Table& table) {
     require(c == '\n' || static_cast<unsigned char>(c) >= 0x20);
   }
   require(lines == table.rows().size() + 2);
-  require(base::printable(text.substr(0, text.find('\n'))) == text.substr(0, text.find('\n')));
+  require(printable(text.substr(0, text.find('\n'))) == text.substr(0, text.find('\n')));
 }
 
 }  // namespace
