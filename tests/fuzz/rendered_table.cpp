@@ -15,7 +15,7 @@ using tools::Cell;
 /// Words in cells, a part of the input each, two in a row.
 tools::Table table_of_parts(const std::vector<std::string>& parts) {
   tools::Table table({{.title = "name", .align = tools::kLeft, .key = "name"},
-                      {.title = parts[0], .align = tools::kLeft, .key = "words"}});
+                      {.title = "words" + parts[0], .align = tools::kLeft, .key = "words"}});
   for (const std::string& part : parts) table.add({Cell("row"), Cell(part)});
   return table;
 }
@@ -24,16 +24,23 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
+/// Words that are a number, such as 1e3, come back as that number.
 void check_csv(const tools::Table& table) {
   const tools::Table again = tools::read_csv("own.csv", tools::csv_text(table));
-  require(again.rows().size() == table.rows().size());
-  require(tools::csv_text(again) == tools::csv_text(table));
+  tools::Table expected(again.heads());
+  for (const std::vector<Cell>& row : table.rows())
+    expected.add({row[0], tools::spelled(std::get<std::string>(row[1].value()))});
+  require(tools::csv_text(again) == tools::csv_text(expected));
 }
 
 void check_json(const tools::Table& table) {
   const auto document = nlohmann::json::parse(tools::table_document("fuzzed", table));
   require(document["rows"].size() == table.rows().size());
-  for (const auto& row : document["rows"]) require(row["words"].is_string());
+  for (std::size_t i = 0; i < table.rows().size(); ++i) {
+    const bool is_empty = std::get<std::string>(table.rows()[i][1].value()).empty();
+    require(is_empty ? document["rows"][i]["words"].is_null()
+                     : document["rows"][i]["words"].is_string());
+  }
 }
 
 /// Characters with a meaning stand behind a backslash, or as entities; a cell ends where it should.
