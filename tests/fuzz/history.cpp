@@ -12,6 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         tools::History::read(file.holding(fuzz::text_of(data, size)).string());
     std::vector<tools::PastRun> runs;
     for (std::size_t i = 0; i < history.size(); ++i) runs.push_back(history.run(i));
+    if (runs.empty()) return;
     tools::history_document(runs);
     tools::history_page("title", runs, nullptr);
     for (const tools::PastRun& run : runs)
