@@ -126,9 +126,11 @@ void History::add_line(std::string_view text, Line line, std::size_t number) {
     return;
   }
   const std::size_t time = text.find(kTime);
-  const char* const from = text.data() + time + kTime.size();
-  if (!text.starts_with(kRun) || time == std::string_view::npos || text.back() != '}' ||
-      std::from_chars(from, text.data() + text.size(), line.time_s).ec != std::errc())
+  const std::string_view seconds =
+      time == std::string_view::npos ? std::string_view() : text.substr(time + kTime.size());
+  if (!text.starts_with(kRun) || text.back() != '}' ||
+      std::from_chars(seconds.data(), seconds.data() + seconds.size(), line.time_s).ec !=
+          std::errc())
     throw InputError(fmt::format(
         "{}:{}: no line of a history; expected those that 'leviosim history add' writes", file_,
         number));
