@@ -52,7 +52,7 @@ Settings Variants::changed(const std::vector<Change>& changes) const {
 sim::ChipConfig Variants::config(const std::vector<Change>& changes) const {
   const Settings settings = changed(changes);
   const sim::ChipConfig config = configure(schema_, platform_.name, settings);
-  check_rules(schema_, settings, config);
+  check_values(schema_, settings, config);
   return config;
 }
 

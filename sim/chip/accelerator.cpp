@@ -44,7 +44,7 @@ Service service_of(const work::OffloadWork& calls, const Accelerators& accelerat
           busy * accelerator.l1_words};
 }
 
-Demand demand_of(const work::Segment& segment, const CoreConfig& core,
+Demand demand_of(const work::Segment& segment, const CoreCosts& core,
                  const Accelerators& accelerators, const CodeFetcher& code,
                  OperationAccounts* by_operation) {
   if (segment.offload.empty() || !has_accelerators(accelerators))

@@ -36,7 +36,7 @@ struct Service {
 Service service_of(const work::OffloadWork& calls, const Accelerators& accelerators);
 
 /// As demand_of() of cost.h, with the calls that accelerators serve.
-Demand demand_of(const work::Segment& segment, const CoreConfig& core,
+Demand demand_of(const work::Segment& segment, const CoreCosts& core,
                  const Accelerators& accelerators, const CodeFetcher& code = {},
                  OperationAccounts* by_operation = nullptr);
 

@@ -121,6 +121,14 @@ class CyclesBy {
     for (std::size_t i = 0; i < M; ++i) of_[i] += times * other.of_[i];
     return *this;
   }
+  /// Only what waiting() has.
+  template <std::size_t M>
+  CyclesBy& add_waiting(const CyclesBy<M>& other, double times) {
+    static_assert(M <= N && M >= kCoreMechanismCount);
+    for (std::size_t i = kLoneMechanismCount; i < kCoreMechanismCount; ++i)
+      of_[i] += times * other.of_[i];
+    return *this;
+  }
 
  private:
   template <std::size_t>

@@ -15,6 +15,9 @@ constexpr double kSettled = 1e-9;
 
 constexpr std::size_t index(Unit unit) { return static_cast<std::size_t>(unit); }
 
+static_assert(kUnitCount <= 32, "Runner::asks has a bit for each unit");
+constexpr std::uint32_t bit(Unit unit) { return std::uint32_t{1} << index(unit); }
+
 /// That waiting for a unit is.
 Mechanism mechanism_of(Unit unit) {
   switch (unit) {
@@ -66,13 +69,20 @@ void apply(const std::vector<UnitRequest>& requests, double fair, std::vector<do
 
 Runner Runner::of(int core, const Demand& demand) {
   const double cycles = std::max(demand.cycles(), 1.0);
-  Runner runner{core, demand.units, demand.streamed / cycles, demand.scattered / cycles,
-                demand.fetches / cycles};
-  for (UnitDemand& unit : runner.units) {
+  Runner runner{.core = core,
+                .units = demand.units,
+                .streamed = demand.streamed / cycles,
+                .scattered = demand.scattered / cycles,
+                .fetches = demand.fetches / cycles};
+  const double accesses = runner.streamed + runner.scattered;
+  runner.asks = accesses > 0 ? bit(Unit::L1) : 0;
+  for (std::size_t k = 0; k < kUnitCount; ++k) {
+    UnitDemand& unit = runner.units[k];
+    if (unit.requests == 0 && unit.cycles == 0) continue;
     unit.requests /= cycles;
     unit.cycles /= cycles;
+    runner.asks |= std::uint32_t{1} << k;
   }
-  const double accesses = runner.streamed + runner.scattered;
   runner.units[index(Unit::L1)] = {accesses, accesses};
   return runner;
 }
@@ -85,17 +95,18 @@ Contention::Contention(const ClusterConfig& config)
       collisions_(config.fpu.collisions) {
   const FpuConfig& fpu = config.fpu;
   const auto mapped = [&](int units) {
-    return fpu.mapping == FpuMapping::Fixed ? Pools{units, 1.0}
-                                            : Pools{1, static_cast<double>(units)};
+    return fpu.mapping == FpuMapping::Fixed ? Pools{units, 1.0, {}}
+                                            : Pools{1, static_cast<double>(units), {}};
   };
   pools_[index(Unit::Fpu)] = mapped(fpu.units);
-  pools_[index(Unit::Divider)] = {1, static_cast<double>(fpu.dividers)};
+  pools_[index(Unit::Divider)] = {1, static_cast<double>(fpu.dividers), {}};
   pools_[index(Unit::Int64)] = mapped(fpu.int64_units);
-  pools_[index(Unit::Bank)] = {1, 1.0};
-  pools_[index(Unit::Refill)] = {1, config.icache.refills};
+  pools_[index(Unit::Bank)] = {1, 1.0, {}};
+  pools_[index(Unit::L1)] = {1, 0.0, {}};
+  pools_[index(Unit::Refill)] = {1, config.icache.refills, {}};
   shared_ = {Unit::Fpu, Unit::Divider, Unit::Int64, Unit::Bank, Unit::L1, Unit::Refill};
   const auto add_queue = [&](Unit unit, int units) {
-    pools_[index(unit)] = {1, static_cast<double>(units)};
+    pools_[index(unit)] = {1, static_cast<double>(units), {}};
     if (units > 0 && collisions_ > 0) queues_.push_back({unit, static_cast<double>(units), {}});
   };
   add_queue(Unit::Divider, fpu.dividers);
@@ -128,17 +139,20 @@ void Contention::begin(const std::vector<Runner>& runners, double dma_words) {
   const std::size_t n = runners.size();
   dma_words_ = dma_words;
   // What the DMA moves, up to half of what there is.
-  pools_[index(Unit::L1)] = {1, std::max(banks_ - dma_words, 0.5 * banks_)};
+  pools_[index(Unit::L1)].capacity = std::max(banks_ - dma_words, 0.5 * banks_);
   for (std::vector<double>* of_runners : {&pace_, &rate_, &free_rate_}) of_runners->assign(n, 1.0);
   for (std::vector<double>* of_runners : {&colliding_, &queued_}) of_runners->assign(n, 0.0);
   for (std::vector<double>* of_runners :
        {&next_pace_, &change_, &last_next_pace_, &last_change_, &streamed_, &scattered_, &fetches_})
     of_runners->resize(n);
+  asked_ = 0;
   for (std::size_t i = 0; i < n; ++i) {
     streamed_[i] = runners[i].streamed;
     scattered_[i] = runners[i].scattered;
     fetches_[i] = runners[i].fetches;
+    asked_ |= runners[i].asks;
   }
+  find_pools(runners);
   find_scarce(runners);
   for (const Unit unit : scarce_) limits_[index(unit)].assign(n, kUnlimited);
   pairs_.clear();
@@ -146,6 +160,7 @@ void Contention::begin(const std::vector<Runner>& runners, double dma_words) {
   for (const Unit unit : {Unit::Fpu, Unit::Int64}) pair_up(runners, unit);
   for (Queue& queue : queues_) {
     queue.members.clear();
+    if ((asked_ & bit(queue.unit)) == 0) continue;
     for (std::size_t i = 0; i < n; ++i) {
       const UnitDemand& asked = runners[i].units[index(queue.unit)];
       if (asked.requests > 0)
@@ -155,15 +170,25 @@ void Contention::begin(const std::vector<Runner>& runners, double dma_words) {
   }
 }
 
+void Contention::find_pools(const std::vector<Runner>& runners) {
+  for (const Unit unit : {Unit::Fpu, Unit::Int64}) {
+    Pools& kind = pools_[index(unit)];
+    if (kind.pools < 2 || (asked_ & bit(unit)) == 0) continue;
+    kind.pool_of.resize(runners.size());
+    for (std::size_t i = 0; i < runners.size(); ++i) kind.pool_of[i] = runners[i].core % kind.pools;
+  }
+}
+
 void Contention::pair_up(const std::vector<Runner>& runners, Unit unit) {
   const Pools& kind = pools_[index(unit)];
-  if (kind.pools == 0 || kind.capacity != 1) return;
+  if (kind.pools == 0 || kind.capacity != 1 || (asked_ & bit(unit)) == 0) return;
   for (std::size_t i = 0; i < runners.size(); ++i) {
     const UnitDemand& a = runners[i].units[index(unit)];
     if (a.cycles == 0) continue;
     for (std::size_t j = i + 1; j < runners.size(); ++j) {
+      if (kind.pools > 1 && kind.pool_of[i] != kind.pool_of[j]) continue;
       const UnitDemand& b = runners[j].units[index(unit)];
-      if (b.cycles == 0 || kind.pool_of(runners[i]) != kind.pool_of(runners[j])) continue;
+      if (b.cycles == 0) continue;
       const bool by_chance = a.run == 0 || b.run == 0;
       pairs_.push_back({i, j, a.cycles, b.cycles,
                         by_chance ? 0 : collisions_in_runs(1, a.run, 1, b.run), by_chance});
@@ -176,7 +201,7 @@ void Contention::find_scarce(const std::vector<Runner>& runners) {
   scarce_.clear();
   for (const Unit unit : shared_) {
     const Pools& kind = pools_[index(unit)];
-    if (kind.pools == 0) continue;
+    if (kind.pools == 0 || (asked_ & bit(unit)) == 0) continue;
     if (kind.pools == 1) {
       double demand = 0;
       for (const Runner& runner : runners) demand += runner.units[index(unit)].cycles;
@@ -184,8 +209,8 @@ void Contention::find_scarce(const std::vector<Runner>& runners) {
       continue;
     }
     demand_.assign(static_cast<std::size_t>(kind.pools), 0.0);
-    for (const Runner& runner : runners)
-      demand_[kind.pool_of(runner)] += runner.units[index(unit)].cycles;
+    for (std::size_t i = 0; i < runners.size(); ++i)
+      demand_[static_cast<std::size_t>(kind.pool_of[i])] += runners[i].units[index(unit)].cycles;
     if (*std::max_element(demand_.begin(), demand_.end()) > kind.capacity) scarce_.push_back(unit);
   }
 }
@@ -205,18 +230,34 @@ double Contention::round(const std::vector<Runner>& runners) {
   sum_up();
   for (std::size_t i = 0; i < n; ++i)
     free_rate_[i] = 1.0 / (1.0 + l1_delay(i) + fetch_delay(i) + colliding_[i] + queued_[i]);
-  // Each unit's limit is found with what the *other* limits leave of the demand.
+  return scarce_.empty() ? settle() : settle_below_limits(runners);
+}
+
+/// Takes the rates as the sharing of time makes them.
+double Contention::settle() {
+  double largest = 0;
+  for (std::size_t i = 0; i < rate_.size(); ++i) {
+    rate_[i] = free_rate_[i];
+    next_pace_[i] = rate_[i] * (1 + colliding_[i]);
+    change_[i] = next_pace_[i] - pace_[i];
+    largest = std::max(largest, std::abs(change_[i]));
+  }
+  return largest;
+}
+
+/// Each unit's limit is found with what the *other* limits leave of the demand.
+double Contention::settle_below_limits(const std::vector<Runner>& runners) {
+  const std::size_t n = runners.size();
   for (const Unit unit : scarce_) {
     for (std::size_t i = 0; i < n; ++i) rate_[i] = std::min(free_rate_[i], allowed(i, index(unit)));
     limit(index(unit), runners);
   }
   double largest = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    rate_[i] =
-        scarce_.empty() ? free_rate_[i] : std::min(free_rate_[i], allowed(i, index(Unit::Core)));
+    rate_[i] = std::min(free_rate_[i], allowed(i, index(Unit::Core)));
     next_pace_[i] = rate_[i] * (1 + colliding_[i]);
     change_[i] = next_pace_[i] - pace_[i];
-    largest = std::max(largest, std::abs(scarce_.empty() ? change_[i] : rate_[i] - last_rate_[i]));
+    largest = std::max(largest, std::abs(rate_[i] - last_rate_[i]));
   }
   return largest;
 }
@@ -326,7 +367,7 @@ void Contention::limit(std::size_t unit, const std::vector<Runner>& runners) {
     requests_.clear();
     for (std::size_t i = 0; i < runners.size(); ++i) {
       const UnitDemand& demand = runners[i].units[unit];
-      if (demand.requests > 0 && kind.pool_of(runners[i]) == static_cast<std::size_t>(pool))
+      if (demand.requests > 0 && (kind.pools == 1 || kind.pool_of[i] == pool))
         requests_.push_back(
             {i, demand.requests, demand.requests * rate_[i], demand.cycles / demand.requests});
     }
@@ -380,7 +421,7 @@ void Contention::book_losses(std::vector<Progress>& progress) const {
       return limits_[index(a)][i] < limits_[index(b)][i];
     });
     const Unit unit = tightest == scarce_.end() ? Unit::Fpu : *tightest;
-    on[mechanism_of(unit)] += std::max(0.0, 1.0 - rate_[i] - on.total());
+    on[mechanism_of(unit)] += std::max(0.0, 1.0 - rate_[i] - on.waiting());
   }
 }
 

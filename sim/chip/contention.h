@@ -50,6 +50,7 @@ struct Progress {
 struct Runner {
   int core = 0;                              ///< id, decides the unit under a fixed mapping
   std::array<UnitDemand, kUnitCount> units;  ///< per lone cycle
+  std::uint32_t asks = ~0u;                  ///< has a bit for each unit that is asked
   double streamed = 0;                       ///< L1 accesses by streams per lone cycle
   double scattered = 0;                      ///< other L1 accesses per lone cycle
   double fetches = 0;  ///< lines from the shared instruction cache per lone cycle
@@ -126,9 +127,7 @@ class Contention {
   struct Pools {
     int pools = 0;
     double capacity = 0;
-    std::size_t pool_of(const Runner& runner) const {
-      return pools > 1 ? static_cast<std::size_t>(runner.core % pools) : 0;
-    }
+    std::vector<int> pool_of{};  ///< of the runners, if there are several
   };
   /// Two runners that share a unit at which they collide by chance.
   struct Pair {
@@ -153,11 +152,14 @@ class Contention {
   };
 
   void begin(const std::vector<Runner>& runners, double dma_words);
+  void find_pools(const std::vector<Runner>& runners);
   void pair_up(const std::vector<Runner>& runners, Unit unit);
   void find_scarce(const std::vector<Runner>& runners);
   /// One round: from paces to rates. Returns the largest change of a pace, or of a rate that has
   /// limits.
   double round(const std::vector<Runner>& runners);
+  double settle();
+  double settle_below_limits(const std::vector<Runner>& runners);
   void collide();
   void sum_up();
   /// What queued requests count of those before them: all if there is one unit.
@@ -189,6 +191,7 @@ class Contention {
   std::vector<double> streamed_, scattered_, fetches_;  ///< per lone cycle
   std::vector<Pair> pairs_;
   std::vector<Queue> queues_;
+  std::uint32_t asked_ = 0;   ///< units that anybody asks for, as Runner::asks
   std::vector<Unit> scarce_;  ///< units that do not serve everybody at rate 1
   std::vector<double> pace_, next_pace_, change_;
   std::vector<double> last_next_pace_, last_change_;  ///< of the round before

@@ -50,9 +50,8 @@ void Controller::book(StageTiming& stage, const work::StageRun& run) const {
 Demand Controller::demand_of_stage(const work::StageRun& stage,
                                    OperationAccounts* by_operation) const {
   if (!has_accelerators(config_.accelerators))
-    return demand_of(work::counts_of(stage), config_.core, code_, by_operation);
-  return demand_of(work::segments_of(stage), config_.core, config_.accelerators, code_,
-                   by_operation);
+    return demand_of(work::counts_of(stage), costs_, code_, by_operation);
+  return demand_of(work::segments_of(stage), costs_, config_.accelerators, code_, by_operation);
 }
 
 /// Only external memory is far from a controller.

@@ -18,6 +18,7 @@ class Controller {
       : kernel_(kernel),
         clock_(clock),
         config_(config),
+        costs_(config.core),
         code_(config.icache, config.icache.worker, 1) {}
 
   /// Runs the job, which begins at that time. Forks run their shares one after the other; transfers
@@ -40,6 +41,7 @@ class Controller {
   Kernel& kernel_;
   const ClockDomain& clock_;
   ControllerConfig config_;
+  CoreCosts costs_;
   CodeFetcher code_;
   bool keep_forks_ = false;
 };

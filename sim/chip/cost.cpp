@@ -37,6 +37,8 @@ Mechanism stall_mechanism(Op op) {
   }
 }
 
+bool repeats_loops(Op op) { return op == Op::LoopIteration || op == Op::LoopJump; }
+
 double part_of(const work::CompiledWork& work, Compiled part) {
   return static_cast<double>(work[static_cast<std::size_t>(part)]);
 }
@@ -71,8 +73,8 @@ CompiledRatios::CompiledRatios(const work::CompiledWork& work)
       used_at_once_(work::compiled_ratio(work, Compiled::LoadsUsedAtOnce, Compiled::Priced, 0)) {}
 
 OperationsOfKind CompiledRatios::apply(Op op, double count) const {
-  const bool repeats = op == Op::LoopIteration || op == Op::LoopJump;
-  const double emitted = count * (repeats ? emitted_loops_ : emitted_);
+  const bool repeats = repeats_loops(op);
+  const double emitted = count * this->emitted(repeats);
   return {.count = count,
           .stalled = measured_ && repeats ? emitted : count,
           .emitted = measured_ ? emitted : 0,
@@ -114,25 +116,53 @@ double run_of(double requests, std::uint64_t iterations) {
 
 }  // namespace
 
-Demand demand_of(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code,
+CoreCosts::CoreCosts(const CoreConfig& core)
+    : code(core.code),
+      measured_instructions(core.measured_instructions),
+      unmeasured_instructions(core.unmeasured_instructions),
+      load_use_fraction(core.load_use_fraction),
+      load_use_stall(core.load_use_stall) {
+  for (const work::OpInfo& info : work::kOps) {
+    const OpCost& cost = core[info.op];
+    prices_[work::index(info.op)] = {cost.issue,
+                                     cost.stall,
+                                     cost.busy,
+                                     stall_mechanism(info.op),
+                                     cost.unit,
+                                     cost.routine,
+                                     repeats_loops(info.op),
+                                     info.op == Op::LoadStream || info.op == Op::LoadIndexed};
+  }
+}
+
+/// As cost_of() prices operations, one segment at a time.
+Demand demand_of(const work::Counts& counts, const CoreCosts& core, const CodeFetcher& code,
                  OperationAccounts* by_operation) {
   Demand demand;
   const CompiledRatios ratios(counts, core.code);
-  for (const work::OpInfo& info : work::kOps) {
-    if (counts[info.op] == 0) continue;  // as most are in a short segment
-    const auto n = static_cast<double>(counts[info.op]);
-    const OperationCost alone = cost_of(info, ratios.apply(info.op, n), core);
+  const double instructions =
+      ratios.measured() ? core.measured_instructions : core.unmeasured_instructions;
+  const double at_once = ratios.measured() ? 0 : core.load_use_fraction;
+  for (std::size_t op = 0; op < work::kOpCount; ++op) {
+    if (counts.n[op] == 0) continue;  // as most are in a short segment
+    const CoreCosts::Price& price = core[op];
+    const auto n = static_cast<double>(counts.n[op]);
+    const double emitted = n * ratios.emitted(price.repeats);
+    const double used_at_once = (price.routine ? 0 : n * ratios.used_at_once() * price.issue) +
+                                (price.loads ? n * at_once : 0);
+    const OperationCost alone{price.issue * (price.routine ? n : emitted * instructions),
+                              core.load_use_stall * used_at_once,
+                              (price.repeats ? emitted : n) * price.stall, price.stall_mechanism};
     alone.add_to(demand.alone);
     if (by_operation != nullptr) {
-      OperationAccount& account = (*by_operation)[work::index(info.op)];
+      OperationAccount& account = (*by_operation)[op];
       account.count += n;
       alone.add_to(account.cycles);
     }
-    const OpCost& cost = core[info.op];
-    if (cost.unit == Unit::Core) continue;
-    UnitDemand& unit = demand.units[static_cast<std::size_t>(cost.unit)];
+    if (price.unit == Unit::Core) continue;
+    UnitDemand& unit = demand.units[static_cast<std::size_t>(price.unit)];
     unit.requests += n;
-    unit.cycles += n * cost.busy;
+    unit.cycles += n * price.busy;
   }
   const CodeFetch fetch = code.fetch(counts.code);
   const double lines = code.lines_executed(demand.alone[Mechanism::Issue]);

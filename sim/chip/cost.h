@@ -60,13 +60,22 @@ class CompiledRatios {
   CompiledRatios(const work::Counts& segment, work::CompiledFor code);
   OperationsOfKind apply(work::Op op, double count) const;
 
+  bool measured() const { return measured_; }
+  /// Executed instructions for each counted one; 1 if none was measured.
+  double emitted(bool repeats) const {
+    if (!measured_) return 1;
+    return repeats ? emitted_loops_ : emitted_;
+  }
+  /// Loads whose value the next instruction needs, for each counted instruction.
+  double used_at_once() const { return used_at_once_; }
+
  private:
   explicit CompiledRatios(const work::CompiledWork& work);
 
   bool measured_;
   double emitted_loops_;  ///< of what repeats loops
   double emitted_;        ///< of all else
-  double used_at_once_;   ///< loads, for each counted instruction
+  double used_at_once_;
 };
 
 /// Cycles that operations of one kind cost a core that runs alone.
@@ -85,9 +94,36 @@ struct OperationCost {
 OperationCost cost_of(const work::OpInfo& info, const OperationsOfKind& operations,
                       const CoreConfig& core);
 
+/// What a core's configuration says of operations, in the form that pricing many segments reads.
+class CoreCosts {
+ public:
+  CoreCosts(const CoreConfig& core);
+
+  struct Price {
+    double issue;
+    double stall;
+    double busy;
+    Mechanism stall_mechanism;
+    Unit unit;
+    bool routine;
+    bool repeats;  ///< it is of what repeats loops
+    bool loads;    ///< the next instruction may use the value, in code that was not measured
+  };
+  const Price& operator[](std::size_t op) const { return prices_[op]; }
+
+  work::CompiledFor code;
+  double measured_instructions;
+  double unmeasured_instructions;
+  double load_use_fraction;
+  double load_use_stall;
+
+ private:
+  std::array<Price, work::kOpCount> prices_;
+};
+
 /// @param code  the caches through which the core fetches; by default unlimited ones
 /// @param by_operation  gets what of `alone` each kind of operation has; may be null
-Demand demand_of(const work::Counts& counts, const CoreConfig& core, const CodeFetcher& code = {},
+Demand demand_of(const work::Counts& counts, const CoreCosts& core, const CodeFetcher& code = {},
                  OperationAccounts* by_operation = nullptr);
 
 // The work of many segments, and what they cost one by one. Each segment has its own ratios of

@@ -18,6 +18,7 @@ constexpr double kNothingLeft = 1e-6;
 
 Team::Team(const ClusterConfig& config, int workers)
     : config_(config),
+      costs_(config.core),
       worker_code_(config.icache, config.icache.worker, std::max(1, workers)),
       master_code_(config.icache, config.icache.master, 1),
       master_(workers),
@@ -51,7 +52,7 @@ void Team::price(std::span<const TeamShare> shares, const TeamMemory::Execution*
     demands_[i] =
         known != nullptr && same_cores_
             ? (*known)[i].demand
-            : demand_of(*share.work, config_.core, config_.accelerators,
+            : demand_of(*share.work, costs_, config_.accelerators,
                         share.core == master_ ? master_code_ : worker_code_, share.by_operation);
   }
 }
@@ -126,7 +127,7 @@ void Team::work(Cycles cycles) {
     const double worked =
         std::min(static_cast<double>(cycles.count()), running.remaining / progress_[i].rate);
     running.remaining -= worked * progress_[i].rate;
-    running.share->time.add(progress_[i].lost, worked);
+    running.share->time.add_waiting(progress_[i].lost, worked);
   }
 }
 

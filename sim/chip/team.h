@@ -64,6 +64,7 @@ class Team {
   std::size_t end_all(Cycles now);
 
   ClusterConfig config_;
+  CoreCosts costs_;
   CodeFetcher worker_code_;
   CodeFetcher master_code_;
   int master_;

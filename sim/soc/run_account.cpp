@@ -32,7 +32,7 @@ void RunAccount::add_work(const work::Job& job) {
 
 /// What it costs a core that runs alone, if no function that it visits was measured.
 double RunAccount::unmeasured_cycles(const work::Segment& segment, bool on_controller) const {
-  const sim::CoreConfig& core = on_controller ? controller_core_ : cluster_core_;
+  const sim::CoreCosts& core = on_controller ? controller_core_ : cluster_core_;
   if (sim::is_measured(work::compiled_of(segment.compiled, core.code))) return 0;
   return sim::demand_of(segment, core, on_controller ? controller_ : cluster_).cycles();
 }

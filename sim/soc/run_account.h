@@ -9,6 +9,7 @@
 
 #include "sim/base/units.h"
 #include "sim/chip/config.h"
+#include "sim/chip/cost.h"
 #include "sim/chip/timing.h"
 #include "sim/work/program.h"
 #include "sim/work/transfers.h"
@@ -68,8 +69,8 @@ class RunAccount {
   Cycles offload_;
   sim::Accelerators cluster_;
   sim::Accelerators controller_;
-  sim::CoreConfig cluster_core_;
-  sim::CoreConfig controller_core_;
+  sim::CoreCosts cluster_core_;
+  sim::CoreCosts controller_core_;
 };
 
 }  // namespace leviosim::soc

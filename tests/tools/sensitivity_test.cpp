@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "platform_models/loader/loader.h"
+#include "sim/soc/job_timer.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/range_bands.h"
 
@@ -158,6 +160,58 @@ TEST(Sensitivity, BandsOfMeasuredCodeAreThoseOfOtherCompilers) {
   const TimeBands bands = time_bands(chip, 8, sample, TimeBandsOf::team_and_one_core, 1);
   EXPECT_NEAR(bands.stages[0].parallel.low, kOtherCompilers.low, 1e-3);
   EXPECT_NEAR(bands.stages[0].parallel.high, kOtherCompilers.high, 1e-3);
+}
+
+/// A RANSAC: hypotheses of differing length and mix, each followed by a piece of serial work or by
+/// the next at once, and a count of inliers at the end.
+work::Job hypotheses(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto share = [&] {
+    work::Segment work;
+    for (const Op op : {Op::IntAlu, Op::F32Fma, Op::F32Div, Op::LoadIndexed, Op::LoadStream})
+      work[op] = random() % (op == Op::F32Div ? 60 : 1'500);
+    work.code[work::reuse_class(4'096)] = 4'000;
+    return work;
+  };
+  std::vector<work::Step> steps;
+  for (int k = 0; k < 40; ++k) {
+    std::vector<work::Segment> shares;
+    for (int core = 0; core < 8; ++core) shares.push_back(share());
+    steps.emplace_back(work::Fork{"hypotheses", std::move(shares)});
+    if (k % 4 == 3) steps.emplace_back(serial(Op::IntAlu, 200 + random() % 400));
+  }
+  std::vector<work::Segment> shares(8);
+  for (work::Segment& work : shares) work[Op::F32Fma] = 40'000;
+  steps.emplace_back(work::Fork{"inliers", std::move(shares)});
+  return job_of("ransac", std::move(steps));
+}
+
+/// Of forks that are alike, a few are timed for bands: within a twentieth of the bands' width they
+/// are those of all forks.
+TEST(Sensitivity, BandsOfManyForksAreThoseOfAFewOfThem) {
+  const platform::ResolvedPlatform chip = platform::resolve_platform("gap9");
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const work::Job job = hypotheses(seed);
+    JobSample sample;
+    sample.add_frame(job, Cycles(1));
+    const TimeBands bands = time_bands(chip, 8, sample, TimeBandsOf::team, 2);
+    const std::vector<Banded> all = range_bands(
+        platform::Variants(chip),
+        [&](const sim::ChipConfig& config) {
+          soc::JobTimer timer(config, 8);
+          const sim::JobTiming timing = timer.front_end(job);
+          return std::vector<double>{static_cast<double>(timer.front_end_cycles(timing).count()),
+                                     static_cast<double>(timing.stages.front().cycles.count())};
+        },
+        2);
+    const auto expect_near = [&](const Banded& some, const Banded& whole) {
+      const double low = whole.low / whole.value, high = whole.high / whole.value;
+      EXPECT_NEAR(some.low, low, 0.05 * (high - low)) << seed;
+      EXPECT_NEAR(some.high, high, 0.05 * (high - low)) << seed;
+    };
+    expect_near(bands.slowest, all[0]);
+    expect_near(bands.stages.at(0).parallel, all[1]);
+  }
 }
 
 TEST(JobSample, HoldsTheSlowestAndSomeOfAllTheRun) {

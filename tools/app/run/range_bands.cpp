@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <string_view>
 
@@ -50,13 +51,96 @@ std::vector<std::string_view> stages_of(const JobSample& sample) {
   return names;
 }
 
+/// Most forks of one name, and serial pieces, that are timed of a stage of a frame.
+constexpr std::size_t kMostAlike = 3;
+
+/// What steps are alike by: "" for serial work; nothing for what is kept whatever comes.
+std::optional<std::string_view> likeness(const work::Step& step) {
+  if (std::holds_alternative<work::Serial>(step)) return "";
+  if (const auto* fork = std::get_if<work::Fork>(&step)) return fork->name;
+  return {};
+}
+
+/// A job of which steps that are alike, such as the hypotheses of a RANSAC, are left out: those
+/// that are kept stand for several. What is beside data that flow stays as it is.
+class Excerpt {
+ public:
+  explicit Excerpt(const work::Job& job) {
+    for (const work::StageRun& stage : job.stages)
+      has_background(stage) ? keep(stage) : keep_some(stage);
+  }
+
+  const work::Job& job() const { return job_; }
+  /// How often each of its stages counts.
+  const std::vector<double>& weights() const { return weights_; }
+
+ private:
+  static bool has_background(const work::StageRun& stage) {
+    return std::any_of(stage.steps.begin(), stage.steps.end(), [](const work::Step& step) {
+      const auto* transfer = std::get_if<work::Transfer>(&step);
+      return std::holds_alternative<work::TransferWait>(step) ||
+             (transfer != nullptr && transfer->background);
+    });
+  }
+
+  void keep(const work::StageRun& stage) {
+    job_.stages.push_back({stage.stage, stage.steps, {}});
+    weights_.push_back(1);
+  }
+
+  void keep_some(const work::StageRun& stage) {
+    std::map<std::string_view, std::vector<std::size_t>> alike;
+    for (std::size_t i = 0; i < stage.steps.size(); ++i)
+      if (const auto name = likeness(stage.steps[i])) alike[*name].push_back(i);
+    std::vector<double> weights(stage.steps.size(), 1.0);
+    for (const auto& [name, places] : alike) {
+      const std::size_t kept = std::min(kMostAlike, places.size());
+      for (const std::size_t i : places) weights[i] = 0;
+      for (std::size_t k = 0; k < kept; ++k)  // each in the middle of those that it stands for
+        weights[places[(2 * k + 1) * places.size() / (2 * kept)]] =
+            static_cast<double>(places.size()) / static_cast<double>(kept);
+    }
+    for (std::size_t i = 0; i < stage.steps.size(); ++i)
+      if (weights[i] > 0) keep_one(stage, i, weights[i]);
+  }
+
+  /// A fork behind another costs less: where one was left out, one without work is in its place.
+  void keep_one(const work::StageRun& stage, std::size_t step, double weight) {
+    const auto* fork = std::get_if<work::Fork>(&stage.steps[step]);
+    const bool behind_fork = step > 0 && std::holds_alternative<work::Fork>(stage.steps[step - 1]);
+    const bool is_behind =
+        !job_.stages.empty() && std::holds_alternative<work::Fork>(job_.stages.back().steps.back());
+    if (fork != nullptr && step > 0 && behind_fork != is_behind)
+      push(stage.stage,
+           behind_fork
+               ? work::Step(work::Fork{fork->name, std::vector<work::Segment>(fork->shares.size()),
+                                       fork->master_takes_part})
+               : work::Step(work::Serial{}),
+           0);
+    push(stage.stage, stage.steps[step], weight);
+  }
+
+  void push(std::string_view stage, work::Step step, double weight) {
+    job_.stages.push_back({stage, {std::move(step)}, {}});
+    weights_.push_back(weight);
+  }
+
+  work::Job job_;
+  std::vector<double> weights_;
+};
+
 /// Cycles of the slowest frame and of those spread over the run, then of each stage, on one chip
 /// after the other: what the first of them took is used again where the others are as it is.
 class SampleTimes {
  public:
   /// @param workers  as of sim::Cluster
   SampleTimes(const JobSample& sample, const sim::ChipConfig& first, int workers)
-      : sample_(sample), stages_(stages_of(sample)), workers_(workers), memory_(cluster_of(first)) {
+      : stages_(stages_of(sample)),
+        slowest_(sample.slowest()),
+        spread_(sample.spread().begin(), sample.spread().end()),
+        iteration_(sample.iteration()),
+        workers_(workers),
+        memory_(cluster_of(first)) {
     soc::JobTimer timer(first, workers);
     timer.remember(&memory_);
     cycles(timer);
@@ -76,25 +160,35 @@ class SampleTimes {
 
   std::vector<double> cycles(soc::JobTimer& timer) const {
     std::vector<double> cycles(2 + stages_.size(), 0.0);
-    const auto front_end = [&](const work::Job& job) {
-      const sim::JobTiming timing = timer.front_end(job);
-      add_stages(timing, cycles);
-      return static_cast<double>(timer.front_end_cycles(timing).count());
-    };
-    cycles[0] = front_end(sample_.slowest());
-    for (const work::Job& job : sample_.spread()) cycles[1] += front_end(job);
-    add_stages(timer.optimiser(sample_.iteration()), cycles);
+    cycles[0] = front_end(timer, slowest_, cycles);
+    for (const Excerpt& job : spread_) cycles[1] += front_end(timer, job, cycles);
+    for (const sim::StageTiming& stage : timer.optimiser(iteration_).stages)
+      of_stage(stage.stage, cycles) += static_cast<double>(stage.cycles.count());
     return cycles;
   }
-  void add_stages(const sim::JobTiming& timing, std::vector<double>& cycles) const {
-    for (const sim::StageTiming& stage : timing.stages) {
-      const auto at = std::find(stages_.begin(), stages_.end(), stage.stage) - stages_.begin();
-      cycles[2 + static_cast<std::size_t>(at)] += static_cast<double>(stage.cycles.count());
+
+  double front_end(soc::JobTimer& timer, const Excerpt& excerpt,
+                   std::vector<double>& cycles) const {
+    const sim::JobTiming timing = timer.front_end(excerpt.job());
+    auto frame = static_cast<double>(timer.front_end_cycles(timing).count());
+    for (std::size_t i = 0; i < timing.stages.size(); ++i) {
+      const auto once = static_cast<double>(timing.stages[i].cycles.count());
+      const double weight = excerpt.weights()[i];
+      of_stage(timing.stages[i].stage, cycles) += weight * once;
+      frame += (weight - 1) * once;
     }
+    return frame;
   }
 
-  const JobSample& sample_;
+  double& of_stage(std::string_view stage, std::vector<double>& cycles) const {
+    const auto at = std::find(stages_.begin(), stages_.end(), stage) - stages_.begin();
+    return cycles[2 + static_cast<std::size_t>(at)];
+  }
+
   std::vector<std::string_view> stages_;
+  Excerpt slowest_;
+  std::vector<Excerpt> spread_;
+  const work::Job& iteration_;
   int workers_;
   sim::TeamMemory memory_;
 };
@@ -180,17 +274,13 @@ TimeBands time_bands(const platform::ResolvedPlatform& platform, int cores, cons
   check(!sample.empty() && which != TimeBandsOf::nothing, "bands are of a run with frames");
   const platform::Variants variants(platform);
   if (which == TimeBandsOf::slowest_frame) {
-    soc::JobTimer first(variants.config({}), cores);
-    sim::TeamMemory memory(first.cluster());
-    first.remember(&memory);
-    first.front_end(sample.slowest());
-    const auto cycles = [&](const sim::ChipConfig& chip) {
-      soc::JobTimer timer(chip, cores);
-      timer.recall(&memory);
-      const auto count = timer.front_end_cycles(timer.front_end(sample.slowest())).count();
-      return std::vector<double>{static_cast<double>(count)};
-    };
-    const Banded band = relative(range_bands(variants, cycles, 1).front());
+    JobSample slowest;
+    slowest.add_frame(sample.slowest(), Cycles(1));
+    const SampleTimes times(slowest, variants.config({}), cores);
+    const Banded band =
+        relative(range_bands(
+                     variants, [&](const sim::ChipConfig& chip) { return times.on(chip); }, 1)
+                     .front());
     return {band, band, {}};
   }
   const sim::ChipConfig first = variants.config({});
