@@ -105,7 +105,8 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Shows `text` if it is time to: several times a second on a terminal, else at every tenth.
+  /// Shows `text` if it is time to: several times a second on a terminal, else at every tenth, and
+  /// the first of a thousand or more.
   void show(std::int64_t done, std::int64_t total, const std::function<std::string()>& text);
   /// Removes the rewritten line.
   void clear();
@@ -119,6 +120,7 @@ class ProgressLine {
   Clock::time_point begin_;
   Clock::time_point last_shown_;
   std::int64_t last_tenth_ = 0;
+  bool has_begun_ = false;
   bool visible_ = false;
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 
 #include "platform_models/loader/instruction_set.h"
 #include "platform_models/loader/value.h"
@@ -343,33 +344,31 @@ std::vector<VariantResult> WhatIf::results(const std::vector<Variant>& variants,
   std::vector<Variant> all{{kAsItIs, {}}};
   all.insert(all.end(), variants.begin(), variants.end());
   std::vector<VariantResult> results(all.size());
-  std::vector<std::optional<ResolvedPoint>> points(all.size());
-  const auto may_fail = [&](std::size_t i, const auto& act) {
+  const auto result_of = [&](const Variant& variant) {
+    std::optional<ResolvedPoint> point;
+    {
+      const std::lock_guard<std::mutex> lock(resolving_);
+      point = resolved(variant);
+    }
     try {
-      act();
+      return timed(variant, *point);
+    } catch (const work::MemoryOverflow& full) {
+      const bool has_more_cores =
+          variant.settings.count(kWorkers) > 0 && variant.settings.count(kL1Size) == 0;
+      if (!has_more_cores || full.memory() == "L2") throw;
+      return with_larger_l1(variant);
+    }
+  };
+  run_all(all.size(), options, [&](std::size_t i) {
+    throw_if_interrupted();
+    try {
+      results[i] = result_of(all[i]);
     } catch (const InputError& error) {
       if (i == 0) throw;
       results[i].name = all[i].name;
       results[i].raised = all[i].raised;
       results[i].failure = error.what();
     }
-  };
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    throw_if_interrupted();
-    may_fail(i, [&] { points[i] = resolved(all[i]); });
-  }
-  run_all(all.size(), options, [&](std::size_t i) {
-    if (!points[i]) return;
-    may_fail(i, [&] {
-      try {
-        results[i] = timed(all[i], *points[i]);
-      } catch (const work::MemoryOverflow& full) {
-        const bool has_more_cores =
-            all[i].settings.count(kWorkers) > 0 && all[i].settings.count(kL1Size) == 0;
-        if (!has_more_cores || full.memory() == "L2") throw;
-        results[i] = with_larger_l1(all[i]);
-      }
-    });
   });
   return results;
 }
