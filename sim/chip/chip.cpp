@@ -44,26 +44,39 @@ void Chip::leave_core() {
   if (config_.controller.shares_core) core_.release();
 }
 
-Task<JobTiming> Chip::control(const work::Job& job) {
-  co_await take_core();
-  JobTiming timing = co_await controller_.run(job);
-  leave_core();
-  co_return timing;
+namespace {
+
+JobTiming of_known(Time begin, Duration takes) {
+  const JobTiming timing{begin, begin + takes, {}};
+  if (timing.end > kLastTime) fail_beyond_time();
+  return timing;
 }
 
-Task<JobTiming> Chip::offload(const work::Job& job) {
+}  // namespace
+
+Task<JobTiming> Chip::control(const work::Job& job, std::optional<Cycles> known) {
   co_await take_core();
-  JobTiming timing = time_offload(job, kernel_.now());
+  JobTiming timing = known ? of_known(kernel_.now(), controller_.clock().duration(*known))
+                           : controller_.time(job, kernel_.now());
   co_await kernel_.at(timing.end);
   leave_core();
   co_return timing;
 }
 
-JobTiming Chip::time_offload(const work::Job& job, Time begin) {
+Task<JobTiming> Chip::offload(const work::Job& job, std::optional<Cycles> known) {
+  co_await take_core();
+  JobTiming timing = time_offload(job, kernel_.now(), known);
+  co_await kernel_.at(timing.end);
+  leave_core();
+  co_return timing;
+}
+
+JobTiming Chip::time_offload(const work::Job& job, Time begin, std::optional<Cycles> known) {
   const Duration one_way =
       timebase_.clock("controller")
           .duration(counted_cycles(std::round(config_.cluster.events.offload)));
-  JobTiming timing = cluster_.time(job, begin + one_way);
+  JobTiming timing = known ? of_known(begin + one_way, cluster_.clock().duration(*known))
+                           : cluster_.time(job, begin + one_way);
   timing.begin = begin;
   timing.end = timing.end + one_way;
   return timing;

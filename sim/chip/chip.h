@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "sim/chip/cluster.h"
 #include "sim/chip/controller.h"
@@ -30,11 +31,12 @@ class Chip {
   }
 
   /// co_await: the controller sends the job to the cluster and hears when it is done.
-  Task<JobTiming> offload(const work::Job& job);
-  /// co_await: the controller runs the job itself.
-  Task<JobTiming> control(const work::Job& job);
+  /// @param known  cycles of the cluster that it takes; then it is not timed, and without stages
+  Task<JobTiming> offload(const work::Job& job, std::optional<Cycles> known = {});
+  /// co_await: the controller runs the job itself. @param known  the same, of the controller
+  Task<JobTiming> control(const work::Job& job, std::optional<Cycles> known = {});
   /// The same of a chip that has nothing else to do.
-  JobTiming time_offload(const work::Job& job, Time begin = {});
+  JobTiming time_offload(const work::Job& job, Time begin = {}, std::optional<Cycles> known = {});
   JobTiming time_control(const work::Job& job) const { return controller_.time(job, {}); }
 
  private:

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "sim/soc/run_account.h"
@@ -46,6 +47,10 @@ class JobSource {
   /// The next of them. Valid until the one after.
   virtual const work::Job& optimise() = 0;
   virtual void publish() = 0;
+
+  /// Cycles of its cores that the job takes which was handed out last, where that is known: its
+  /// work is not looked at then.
+  virtual std::optional<Cycles> known_cycles() const { return std::nullopt; }
 
   /// Names and units of the stages.
   virtual std::vector<StageResult> empty_stages() const = 0;

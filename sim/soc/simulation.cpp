@@ -81,7 +81,7 @@ sim::Process Simulation::front_end() {
     }
     const work::Job& job = source_.process_frame();
     account_.add_work(job);
-    const sim::JobTiming timing = co_await chip_.offload(job);
+    const sim::JobTiming timing = co_await chip_.offload(job, source_.known_cycles());
     --in_flight_;
     account_.add_parallel(timing);
     const sim::JobTiming single = on_one_core_ ? single_core_.front_end(job) : sim::JobTiming{};
@@ -103,7 +103,7 @@ sim::Process Simulation::optimiser() {
     for (int k = 0; k < iterations; ++k) {
       const work::Job& job = source_.optimise();
       account_.add_work(job);
-      const sim::JobTiming timing = co_await chip_.control(job);
+      const sim::JobTiming timing = co_await chip_.control(job, source_.known_cycles());
       account_.add_parallel(timing);
       account_.add_single(timing);  // the controller is one core
       observer_.on_optimiser({snapshot_frame_, k, k + 1 == iterations, job, timing});

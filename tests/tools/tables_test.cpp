@@ -339,7 +339,7 @@ TEST(Report, OnlyItsLastLineIsAboutTheHost) {
   const std::vector<std::string> second = lines_of(report(run));
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t i = 0; i + 1 < first.size(); ++i) EXPECT_EQ(first[i], second[i]);
-  EXPECT_EQ(first.back(), "host: 5 frames in 2.5 s (2.0 frames/s)");
+  EXPECT_EQ(first.back(), "host: 5 frames in 2.5 s (2.0 frames/s, 0.1 times real time)");
 }
 
 TEST(Report, TablesAreChosenByName) {

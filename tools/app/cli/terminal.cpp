@@ -291,7 +291,7 @@ std::string escape_markup(std::string_view text) {
 }
 
 /// Of so many, the first is shown, too: a tenth may take minutes.
-constexpr std::int64_t kMany = 1000;
+constexpr std::int64_t kManySteps = 1000;
 
 ProgressLine::Style ProgressLine::style_of_stderr(bool quiet) {
   if (quiet) return Style::None;
@@ -307,7 +307,7 @@ void ProgressLine::show(std::int64_t done, std::int64_t total,
   if (style_ == Style::None) return;
   if (style_ == Style::Lines) {
     const std::int64_t tenth = done * 10 / total;
-    if (tenth == last_tenth_ && (has_begun_ || done == 0 || total < kMany)) return;
+    if (tenth == last_tenth_ && (has_begun_ || done == 0 || total < kManySteps)) return;
     has_begun_ = true;
     last_tenth_ = tenth;
     std::fputs((printable(text()) + '\n').c_str(), stderr);

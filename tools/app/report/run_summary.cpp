@@ -331,9 +331,14 @@ std::string trajectory_summary(const RunResult& run) {
 std::string host_line(const RunResult& run) {
   std::string text =
       fmt::format("host: {} frames in {:.1f} s", run.frames.size(), run.host_seconds);
-  if (run.host_seconds > 0)
-    text += fmt::format(" ({:.1f} frames/s)",
-                        static_cast<double>(run.frames.size()) / run.host_seconds);
+  if (run.host_seconds > 0 && !run.frames.empty()) {
+    const double flown_s = static_cast<double>(run.frames.back().t_ns - run.frames.front().t_ns +
+                                               run.frame_period_ns) *
+                           1e-9;
+    text += fmt::format(" ({:.1f} frames/s, {} times real time)",
+                        static_cast<double>(run.frames.size()) / run.host_seconds,
+                        readable(flown_s / run.host_seconds, 1));
+  }
   return text + '\n';
 }
 

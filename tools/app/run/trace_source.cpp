@@ -97,8 +97,10 @@ std::vector<StageResult> TraceSource::empty_stages() const {
   return stages;
 }
 
-void TraceSource::describe(RunResult& result) const {
-  const traces::WorkTraceInfo& info = trace_.info();
+void TraceSource::describe(RunResult& result) const { describe_recording(trace_, result); }
+
+void describe_recording(const traces::WorkTrace& trace, RunResult& result) {
+  const traces::WorkTraceInfo& info = trace.info();
   result.profile = info.profile;
   result.frame_period_ns = info.frame_period_ns;
   result.image_width = info.image_width;

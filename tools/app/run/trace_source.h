@@ -78,6 +78,9 @@ class TraceSource : public RunSource {
   std::vector<FrameComparison> comparisons_;
 };
 
+/// RunSource::describe() of recorded work.
+void describe_recording(const traces::WorkTrace& trace, RunResult& result);
+
 // A recorded run on another chip: the same work, timed anew in the same loop of camera, front end
 // and optimiser.
 

@@ -17,6 +17,7 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/report/statistics.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/run/known_runs.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
@@ -60,14 +61,14 @@ void add_statistics(const RunResult& run, bool ate_holds, std::vector<Figure>& f
       figures.push_back({s.name, s.unit, *s.value});
 }
 
-Outcome computed(const ResolvedPoint& point) {
+Outcome computed(const ResolvedPoint& point, KnownRuns& known) {
   const auto progress = [](const Progress&) { throw_if_interrupted(); };
   Outcome outcome;
   if (point.trace == nullptr) {
     add_statistics(simulate(point.request, progress), true, outcome.figures);
     return outcome;
   }
-  const Replay replayed = replay(*point.trace, point.request, progress);
+  const Replay replayed = known.replay(*point.trace, point.request, progress);
   add_comparison(replayed, outcome.figures);
   add_statistics(replayed.run,
                  std::all_of(replayed.frames.begin(), replayed.frames.end(),
@@ -185,9 +186,9 @@ RunRecord point_record(const ResolvedPoint& point, const SweepRow& settings, int
 
 }  // namespace
 
-Outcome run_point(const ResolvedPoint& point) {
+Outcome run_point(const ResolvedPoint& point, KnownRuns& known) {
   try {
-    return computed(point);
+    return computed(point, known);
   } catch (const InputError& error) {
     return {error.what(), {}};
   }

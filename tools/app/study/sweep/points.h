@@ -25,6 +25,8 @@
 
 namespace leviosim::tools {
 
+class KnownRuns;  // known_runs.h
+
 struct SweepKey {
   enum class Kind {
     chip,             ///< "platform.cluster.clock"
@@ -312,7 +314,7 @@ inline constexpr std::array kObjectives{
 
 /// Computes the point, or times its recorded work. A chip too small for the work is a failure.
 /// @throws Interrupted
-Outcome run_point(const ResolvedPoint& point);
+Outcome run_point(const ResolvedPoint& point, KnownRuns& known);
 
 // A point of a finished sweep as a run that can be compared: "swept:3". A sweep keeps figures only,
 // not where cycles went, so the point is replayed or computed again, as the sweep's plan says.

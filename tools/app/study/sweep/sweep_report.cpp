@@ -16,6 +16,7 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/report/statistic_list.h"
+#include "tools/app/run/known_runs.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/engine.h"
 #include "tools/app/study/sweep/points.h"
@@ -305,9 +306,11 @@ Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, Swe
     batch.keys.push_back(points[i].key);
   }
   batch.before = chosen.size() - open.size();
+  KnownRuns known;
   batch.compute = [&](std::size_t i) {
     return run_point(resolve(sweep.plan, points[open[i]].settings, sweep.inputs,
-                             fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)));
+                             fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)),
+                     known);
   };
   // In the order of the plan, so that the file has the same bytes however many run at a time. Those
   // that wait for one before them are in the cache if the program is killed.

@@ -55,12 +55,12 @@ void take_costs(VariantResult& result, const RunResult& run) {
   result.is_whole_area = chip.known;
 }
 
-VariantResult timed(const Variant& variant, const ResolvedPoint& point) {
+VariantResult timed(const Variant& variant, const ResolvedPoint& point, KnownRuns& known) {
   RunRequest request = point.request;
   request.time_bands = TimeBandsOf::slowest_frame;
   request.on_one_core = false;
   const auto progress = [](const Progress&) { throw_if_interrupted(); };
-  const RunResult run = point.trace != nullptr ? replay(*point.trace, request, progress).run
+  const RunResult run = point.trace != nullptr ? known.replay(*point.trace, request, progress).run
                                                : simulate(request, progress);
   VariantResult result;
   result.name = variant.name;
@@ -320,7 +320,7 @@ VariantResult WhatIf::with_larger_l1(Variant variant) {
       const std::lock_guard<std::mutex> lock(resolving_);
       point = resolved(larger);
     }
-    return timed(larger, *point);
+    return timed(larger, *point, known_);
   };
   std::int64_t size = 0;
   {
@@ -351,7 +351,7 @@ std::vector<VariantResult> WhatIf::results(const std::vector<Variant>& variants,
       point = resolved(variant);
     }
     try {
-      return timed(variant, *point);
+      return timed(variant, *point, known_);
     } catch (const work::MemoryOverflow& full) {
       const bool has_more_cores =
           variant.settings.count(kWorkers) > 0 && variant.settings.count(kL1Size) == 0;

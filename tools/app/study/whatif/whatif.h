@@ -15,6 +15,7 @@
 #include "tools/app/html_report/page.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
+#include "tools/app/run/known_runs.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/engine.h"
 #include "tools/app/study/sweep/points.h"
@@ -91,6 +92,7 @@ class WhatIf {
   std::string trace_;
   SweepRow again_;
   SweepPlan plan_;
+  KnownRuns known_;
   std::mutex resolving_;
 };
 
