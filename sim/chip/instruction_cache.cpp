@@ -208,8 +208,13 @@ double CodeFetcher::lines_executed(double instructions) const {
 }
 
 std::size_t CodeFetcher::HashOfReuse::operator()(const work::CodeReuse& code) const {
+  std::array<std::uint64_t, 4> lanes{};  // that do not wait for each other
+  for (std::size_t k = 0; k < code.size(); ++k) {
+    std::uint64_t& lane = lanes[k % lanes.size()];
+    lane = (lane ^ code[k]) * 0x9e3779b97f4a7c15u;
+  }
   std::uint64_t hash = 0;
-  for (const std::uint64_t bytes : code) hash = (hash ^ bytes) * 0x9e3779b97f4a7c15u;
+  for (const std::uint64_t lane : lanes) hash = (hash ^ (lane >> 32) ^ lane) * 0x9e3779b97f4a7c15u;
   return hash ^ (hash >> 32);
 }
 
