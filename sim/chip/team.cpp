@@ -27,6 +27,8 @@ Team::Team(const ClusterConfig& config, int workers)
 void Team::recall(const TeamMemory* memory) {
   recalling_ = memory;
   same_cores_ = memory != nullptr && memory->has_cores_of(config_);
+  other_operations_.reset();
+  if (memory != nullptr) other_operations_ = memory->operations_that_differ(config_);
   same_sharing_ = memory != nullptr && memory->shares_as(config_);
 }
 
@@ -50,11 +52,17 @@ void Team::price(std::span<const TeamShare> shares, const TeamMemory::Execution*
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const TeamShare& share = shares[i];
     demands_[i] =
-        known != nullptr && same_cores_
+        known != nullptr && (same_cores_ || asks_the_same(*share.work))
             ? (*known)[i].demand
             : demand_of(*share.work, costs_, config_.accelerators,
                         share.core == master_ ? master_code_ : worker_code_, share.by_operation);
   }
+}
+
+bool Team::asks_the_same(const work::Segment& segment) const {
+  return other_operations_ &&
+         std::none_of(other_operations_->begin(), other_operations_->end(),
+                      [&](std::size_t operation) { return segment.n[operation] > 0; });
 }
 
 bool Team::repeats(std::span<TeamShare> shares, Cycles now, const Traffic& traffic,

@@ -5,6 +5,8 @@
 // moved. No cycle is stepped.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -51,6 +53,8 @@ class Team {
   };
 
   void price(std::span<const TeamShare> shares, const TeamMemory::Execution* known);
+  /// Whether a segment asks for the same on the chip that is remembered, whatever it counted.
+  bool asks_the_same(const work::Segment& segment) const;
   void walk(std::span<TeamShare> shares, Cycles now, const Traffic& traffic);
   /// Whether it takes as long as what is known, which it is then.
   bool repeats(std::span<TeamShare> shares, Cycles now, const Traffic& traffic,
@@ -76,6 +80,8 @@ class Team {
   TeamMemory* learning_ = nullptr;
   const TeamMemory* recalling_ = nullptr;
   bool same_cores_ = false;
+  /// That cost something else there; nothing if more of the cores differs.
+  std::optional<std::vector<std::size_t>> other_operations_;
   bool same_sharing_ = false;
 };
 

@@ -5,6 +5,8 @@
 // Left out: executions beside transfers of the DMA, which are timed anew.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -38,6 +40,8 @@ class TeamMemory {
 
   /// Whether each segment asks for the same on another cluster.
   bool has_cores_of(const ClusterConfig& other) const;
+  /// If only costs of operations differ, which: segments without these ask for the same.
+  std::optional<std::vector<std::size_t>> operations_that_differ(const ClusterConfig& other) const;
   /// Whether segments that ask for the same take as long beside each other.
   bool shares_as(const ClusterConfig& other) const;
 

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <optional>
 #include <random>
+#include <vector>
 
 #include "platform_models/loader/variants.h"
 #include "sim/soc/job_timer.h"
@@ -125,6 +127,10 @@ TEST(TeamMemory, KnowsWhatDoesNotDependOnANumber) {
   EXPECT_FALSE(memory.shares_as(cluster({"cluster.fpu.units", 8})));
   EXPECT_FALSE(memory.has_cores_of(cluster({"isa.unmeasured_instructions", 1.4})));
   EXPECT_TRUE(memory.shares_as(cluster({"isa.unmeasured_instructions", 1.4})));
+  EXPECT_EQ(memory.operations_that_differ(cluster({"isa.ops.f32_div.stall", 30})),
+            std::vector<std::size_t>{work::index(Op::F32Div)});
+  EXPECT_EQ(memory.operations_that_differ(cluster({"isa.unmeasured_instructions", 1.4})),
+            std::nullopt);
 }
 
 }  // namespace
