@@ -133,7 +133,7 @@ status=0
 for file in "${files[@]}"; do
   cmp "$results/old/$file" "$results/new/$file" || status=1
 done
-echo "compare_programs: ${#files[@]} files compared, $(printf '%s\n' "${files[@]}" | grep -c stats.json) of them stats.json"
+echo "compare_programs: ${#files[@]} files compared, $(printf '%s\n' "${files[@]}" | grep -c run.json) of them run.json"
 if ((status == 0)); then
   echo "compare_programs: all files are the same, byte by byte"
 else

@@ -4,7 +4,7 @@
 #include <cstdlib>
 
 #include "tools/app/budget/check.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/record/record.h"
 
 namespace leviosim::fuzz {
 

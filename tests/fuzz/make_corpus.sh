@@ -8,20 +8,26 @@ mkdir -p "$2"
 folder=$(realpath "$2")
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-for target in platform_yaml overrides sweep_plan sensor_yaml asl_tables budget baseline cache_entry \
-  flight_plan json output_record rendered_table run_folder; do
+for target in platform_yaml overrides sweep_plan sensor_yaml asl_tables budget record flight_plan \
+  json output_record rendered_table; do
   mkdir -p "$folder/$target"
 done
 "$seeds" "$folder"
 
 cp platform_models/chips/*.yaml "$folder/platform_yaml"
-cp tools/ci/*.json "$folder/baseline"
-cat >"$folder/baseline/small" <<'END'
-{"format": "leviosim baseline", "version": 1,
-"facts": {"program":"0.1.0 x","profile":"levio","seed":1,"platform":"gap9","overrides":[],"cores":8,"image":[160,120],"first_frame":0,"frames":10,"inputs":{"cam0/data.csv":"62"}},
-"statistics": {"frames.count":[10,"1"],"stages.feature_extraction.cycles.parallel.mean":[190000.5,"cycles"]},
+cp tools/ci/*.json "$folder/record"
+cat >"$folder/record/small" <<'END'
+{"format": "leviosim run", "version": 1,
+"verdicts": [{"about":"time","grade":"good","word":"fits","reasons":[]},{"about":"map","grade":"bad","word":"lost","reasons":["x"]}],
+"program": "0.1.0 x",
+"facts": {"profile":"levio","seed":1,"platform":"gap9","overrides":[],"cores":8,"image":[160,120],"first_frame":0,"frames":10,"inputs":{"cam0/data.csv":"62"}},
+"statistics": {"frames.count":[10,"1"],"stages.feature_extraction.cycles.parallel.mean":[190000.5,"cycles","of a call"],"accuracy.ate.rmse":[0.25,"m","error","SE(3)"]},
 "stages": [{"name":"feature extraction","key":"feature_extraction","controller":false,"cycles":1900000,"parts":{"detect":{"issue int_alu":[1400000,1000000]},"":{"fpu":500000}}}]}
 END
+cat >"$folder/record/outcome" <<'END'
+{"format": "leviosim run", "version": 1, "statistics": {"sub_trajectories":[3,""],"frames":[3,""],"matched":[3,""],"completion":[1,""],"map_restarts":[0,""],"scale.windows":[0,""],"scale.mean":[0,""],"scale.sigma":[0,""],"path_m":[1,""],"arrived":[3,""]}}
+END
+printf 'fleviosim cache 3 ab-fuzzed %s\n{}' "$(printf '{}' | sha256sum | cut -c1-64)" >"$folder/record/file"
 cp tools/ci/budgets.yaml "$folder/budget/project"
 cat >"$folder/budget/forms" <<'END'
 budgets:
@@ -98,28 +104,6 @@ printf 'leviosim files 1\n%064d 12 frames.csv\n%064d 0 deep/er/%%0A%%25x\n- - po
   >"$folder/output_record/some"
 printf 'leviosim journal 1 9\n- - notes.md\n' >"$folder/output_record/journal"
 printf 'leviosim files 1\n- - ../x\n' >"$folder/output_record/outside"
-cat >"$folder/cache_entry/text" <<'END'
-t{"failure":"","figures":[["ate_m","",0.25],["arrived","",3],["processed","",3],["health","",1]],"format":"leviosim outcome 2","protocol":"SE(3)"}
-END
-printf 'fleviosim cache 2 ab-fuzzed %s\n{}' "$(printf '{}' | sha256sum | cut -c1-64)" >"$folder/cache_entry/file"
-
-# The fewest lines of each file of a run, in the order of the target.
-{
-  cat <<'END'
-{"format":"leviosim manifest","version":1,"program":{"version":"0.1.0","revision":"x"},"profile":"levio","seed":1,
-"platform":{"name":"gap9","overrides":[],"cores":8},"image":{"width":160,"height":120},
-"data":{"first_frame":0,"frames":1},"inputs":[{"name":"cam0/data.csv","sha256":"62"}]}
-=%%=
-{"format":"leviosim statistics","version":1,"statistics":[{"name":"frames.count","unit":"1","description":"d","value":1}]}
-=%%=
-frame,t_ns,source,keyframe,features,world_matches,frame_matches,inliers,landmarks,map_restarts,places,places_removed,loop_closures,arrival_ns,start_ns,end_ns,latency_ns,parallel_cycles,single_cycles,cycles_triangulation
-0,1000000000000,first,1,0,0,0,0,0,0,0,0,0,0,0,179827,179827,66536,181157,33830
-=%%=
-stage,runs_on,where,mechanism,operation,cycles,count
-triangulation,cluster,,total,,33830.000,0
-triangulation,cluster,solve,issue,int_alu,1500.000,1400
-END
-} >"$folder/run_folder/small"
 
 # Depth, members and lines of what is JSON; words that mean something where they are printed.
 printf '{"a":[{"b":1.5e3},null,true,"\\u00e9"]}' >"$folder/json/some"

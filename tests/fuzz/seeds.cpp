@@ -114,11 +114,11 @@ void write_trajectories(const fs::path& folder) {
 
 /// A sweep of two points, one of them finished.
 void write_sweep(const fs::path& file) {
-  write(file, R"({"sweep":"leviosim sweep 3","points":2,"keys":"k","simulator":"0","program":"p",)"
+  write(file, R"({"sweep":"leviosim sweep 4","points":2,"keys":"k","simulator":"0","program":"p",)"
               R"("parameters":["cores"],"place":"plan.yaml","plan":"points: { grid: {} }"})"
               "\n"
-              R"({"point":1,"key":"one","set":[["cores","4"]],"failure":"",)"
-              R"("figures":[["energy.frame","uJ",3.5]]})"
+              R"({"point":1,"key":"one","set":[["cores","4"]],)"
+              R"("record":{"statistics":{"energy.frame":[3.5,"mJ"]}}})"
               "\n");
 }
 
@@ -126,7 +126,7 @@ void write_history(const fs::path& folder) {
   const fs::path empty = folder / "empty";
   write(empty, "");
   const tools::PastRun run{.origin = {"c1", "main", 1, "subject"}, .record = fuzz::checked_run()};
-  write(folder / "run", tools::History::read(empty.string()).lines_for(run));
+  write(folder / "run", tools::History::read(empty.string()).line_for(run));
 }
 
 }  // namespace

@@ -32,7 +32,15 @@ RunOutcome example_outcome() {
   return outcome;
 }
 
-Outcome example_figures() { return figures_of(example_outcome()); }
+RunRecord example_figures() { return record_of(example_outcome()); }
+
+std::string text_of(const RunRecord& record) { return json_text(record_json(record)); }
+
+RunRecord failed(const std::string& why) {
+  RunRecord record;
+  record.failure = why;
+  return record;
+}
 
 Point example_run() {
   Point point;
@@ -48,9 +56,9 @@ TEST(OutcomeCache, GivesBackWhatWasStored) {
   const std::string key(64, 'a');
   EXPECT_FALSE(cache.find(key));
   cache.store(key, example_figures());
-  const std::optional<Outcome> found = cache.find(key);
+  const std::optional<RunRecord> found = cache.find(key);
   ASSERT_TRUE(found);
-  EXPECT_EQ(to_text(*found), to_text(example_figures()));
+  EXPECT_EQ(text_of(*found), text_of(example_figures()));
   EXPECT_EQ(run_outcome_of(*found).ate_m, 0.1 + 0.2);
   EXPECT_FALSE(run_outcome_of(*found).relative_percent);
   EXPECT_FALSE(cache.find(std::string(64, 'b')));
@@ -76,7 +84,7 @@ TEST(OutcomeCache, BelievesNoFileOfAnotherKeyAndWritesItAnew) {
   const OutcomeCache cache(folder / "runs");
   const std::string key(64, 'a');
   const std::string other(64, 'b');
-  const Outcome swapped{"another", {}};
+  const RunRecord swapped = failed("another");
   cache.store(key, example_figures());
   cache.store(other, swapped);
   const fs::path file = folder / "runs/aa" / (key + ".json");
@@ -85,9 +93,9 @@ TEST(OutcomeCache, BelievesNoFileOfAnotherKeyAndWritesItAnew) {
   EXPECT_TRUE(cache.find(other));
   cache.store(key, example_figures());
   ASSERT_TRUE(cache.find(key));
-  EXPECT_EQ(to_text(*cache.find(key)), to_text(example_figures()));
+  EXPECT_EQ(text_of(*cache.find(key)), text_of(example_figures()));
   cache.store(key, swapped);  // what is whole stays
-  EXPECT_EQ(to_text(*cache.find(key)), to_text(example_figures()));
+  EXPECT_EQ(text_of(*cache.find(key)), text_of(example_figures()));
 }
 
 TEST(RunKey, DependsOnEverythingButTheFolder) {
@@ -260,9 +268,11 @@ TEST(Runner, ComputesEqualKeysOnceAndCountsAllOfThem) {
   PointBatch batch{.keys = {a, b, a, c, a}, .before = 2, .keeps_failures = false};
   batch.compute = [&](std::size_t point) {
     ++computed;
-    return Outcome{point == 3 ? "too small" : "", {{"x", "", double(point)}}};
+    RunRecord record = failed(point == 3 ? "too small" : "");
+    record.statistics = {{.name = "x", .value = double(point)}};
+    return record;
   };
-  batch.take = [&](std::size_t point, const Outcome& o) { taken[point] = o.figures[0].value; };
+  batch.take = [&](std::size_t point, const RunRecord& o) { taken[point] = o.value("x").value(); };
   const Tally first = run_points(batch, {.threads = 2, .cache = folder / "cache"});
   EXPECT_EQ(computed, 3);
   EXPECT_EQ(first.computed, 5u);
@@ -287,11 +297,11 @@ TEST(Runner, SaysHowLongItTakes) {
 }
 
 TEST(RunOutcome, RefusesKeptFiguresOfAnotherKind) {
-  Outcome figures = example_figures();
-  figures.figures.pop_back();
+  RunRecord figures = example_figures();
+  figures.statistics.pop_back();
   expect_input_error([&] { run_outcome_of(figures); }, {"cache", "path_m"});
   figures = example_figures();
-  for (Figure& figure : figures.figures) figure.value = 1e300;
+  for (Statistic& statistic : figures.statistics) statistic.value = 1e300;
   expect_input_error([&] { run_outcome_of(figures); }, {"cache", "sub_trajectories"});
 }
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "tests/support/run_program.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

@@ -8,7 +8,7 @@
 #include "tests/tools/junit_schema.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
@@ -135,7 +135,7 @@ TEST_F(Check, RunAndReplayHoldABudgetToo) {
     const ProgramResult result = program(words);
     EXPECT_EQ(result.status, 1) << result.err;
     expect_holds(result.out, {"results: ", "NOT MET", "L1 peak <= 1 kB"});
-    EXPECT_TRUE(fs::exists(out + "/stats.json"));  // the run itself is fine
+    EXPECT_TRUE(fs::exists(out + "/run.json"));  // the run itself is fine
     words.insert(words.end(), {"--force", "--baseline", path("baseline.json")});
     words[words.size() - 4] = path("budgets.yaml");
     EXPECT_EQ(program(words).status, 0);
@@ -175,7 +175,7 @@ TEST_F(Check, RefusesBadInput) {
                  {"budgets.yaml", "a run folder, a work trace, or a JSON file", "budget record"});
   expect_refused(
       program({"check", path("run"), "--budget", budget, "--baseline", write("no.json", "{}")}),
-      {"no.json", "no baseline"});
+      {"no.json", "budget record"});
   expect_refused(program({"check", path("run"), "--budget", budget, "--junit", budget}),
                  {"--junit"});
   expect_refused(program({"run", "--platform", "gap9", "--data", path("flight"), "--out",
@@ -185,7 +185,7 @@ TEST_F(Check, RefusesBadInput) {
   expect_refused(program({"budget", "recrod", path("run")}), {"did you mean 'record'"});
   expect_refused(program({"budget", "init", path("run"), "--margin", "5"}), {"--margin '5'"});
   std::string other = base::read_text_file(path("baseline.json"));
-  other.replace(other.find("\"seed\":1"), 8, "\"seed\":2");
+  other.replace(other.find("\"seed\": 1"), 9, "\"seed\": 2");
   expect_refused(
       program({"check", path("run"), "--budget", budget, "--baseline", write("seed.json", other)}),
       {"cannot be compared", "--allow seed"});
@@ -441,7 +441,7 @@ TEST(ProjectBudgets, HaveBaselinesOfBothProfiles) {
   for (const char* profile : {"levio", "next"}) {
     const std::string file = fmt::format("tools/ci/{}-gap9.json", profile);
     const RunRecord baseline =
-        parse_baseline(file, base::read_text_file(tests::source_folder() / file));
+        parse_record(file, base::read_text_file(tests::source_folder() / file), Level::kept);
     EXPECT_EQ(baseline.facts.profile, profile);
     EXPECT_FALSE(sections_for(budget, baseline).empty());
   }

@@ -9,8 +9,9 @@
 #include "platform_models/loader/loader.h"
 #include "tests/tools/constant_source.h"
 #include "tests/tools/example_run.h"
+#include "tests/tools/statistic_values.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/live_source.h"
@@ -285,10 +286,10 @@ TEST(ClosedLoop, FilesSayOfEveryFrameWhatBecameOfIt) {
         ",30000000,0,0,0,0,1\n"})
     EXPECT_NE(csv.find(part), std::string::npos) << part << " is not in:\n" << csv;
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
-  const std::string statistics = statistics_text(run);
+  const std::string statistics = testing::figures_text(run);
   for (const char* part : {"\"camera.dropped\"", "\"camera.missed\""}) {
     EXPECT_NE(statistics.find(part), std::string::npos) << part;
-    EXPECT_EQ(statistics_text(testing::example_run()).find(part), std::string::npos) << part;
+    EXPECT_EQ(testing::figures_text(testing::example_run()).find(part), std::string::npos) << part;
   }
   const std::string text = report(run);
   for (const char* part :
@@ -310,7 +311,7 @@ RunResult on_gap9(const std::string& data, std::optional<CameraRequest> camera,
 }
 
 std::vector<std::string> files_of(const RunResult& run) {
-  return {statistics_text(run), csv_text(frame_rows(run)), csv_text(energy_rows(run)),
+  return {testing::figures_text(run), csv_text(frame_rows(run)), csv_text(energy_rows(run)),
           traces::format_tum(run.trajectory)};
 }
 

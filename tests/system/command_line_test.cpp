@@ -114,7 +114,7 @@ TEST_F(CommandLine, RefusesPlatformsThatAreNotThere) {
 }
 
 TEST_F(CommandLine, SuggestsCommandsAndOptions) {
-  expect_refusal({}, {"expected a command: demo, run, synth, doctor, platforms"});
+  expect_refusal({}, {"expected a command: demo, run, replay, synth, flow"});
   expect_refusal({"rum"}, {"unknown command 'rum'; did you mean 'run'?"});
   expect_refusal({"run", "--plattform", "gap9"},
                  {"unknown option '--plattform'; did you mean '--platform'?"});

@@ -6,7 +6,9 @@
 
 #include "tests/support/program_suite.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/record/record.h"
+#include "tools/app/run/record_source.h"
+#include "tools/app/table/table_files.h"
 #include "tools/app/table/terminal_table.h"
 #include "traces/synthesis/synthetic.h"
 
@@ -31,7 +33,7 @@ class Compare : public tests::ProgramSuite {
     RecordOptions options;
     options.overrides = overrides;
     options.quiet = true;
-    return replay_record(path("run/work.trace"), options);
+    return replayed_run(path("run/work.trace"), options).record;
   }
   /// A copy of the run folder with another text in a file of it.
   static std::string changed_run(const std::string& file, const std::string& before,
@@ -135,7 +137,7 @@ TEST_F(Compare, OneUnitLessIsWaitedFor) {
 }
 
 TEST_F(Compare, TheFolderOfARunSaysWhatItsReplaySays) {
-  const RunRecord run = read_run_folder(path("run"));
+  const RunRecord run = read_run_folder(path("run"), false).record;
   const RunRecord again = replayed({});
   const RunComparison c = compare_runs(run, again);
   for (const ComparedQuantity& q : c.figures) EXPECT_EQ(q.a, q.b) << q.name;
@@ -143,11 +145,11 @@ TEST_F(Compare, TheFolderOfARunSaysWhatItsReplaySays) {
   EXPECT_TRUE(c.blocks.empty());
 }
 
-TEST_F(Compare, ACsvOfPartsIsReadBackAsItWas) {
+TEST_F(Compare, TheRecordOfAFolderIsThatOfItsReplay) {
   const RunRecord run = replayed({});
-  const std::string text = cycles_csv(run.cycles);
-  EXPECT_EQ(text, base::read_text_file(path("run/cycles.csv")));
-  EXPECT_EQ(cycles_csv(parse_cycles("cycles.csv", text)), text);
+  const RunRecord folder = read_run_folder(path("run"), false).record;
+  EXPECT_EQ(record_json(run).at("stages"), record_json(folder).at("stages"));
+  EXPECT_EQ(csv_text(cycle_rows(run.cycles)), base::read_text_file(path("run/cycles.csv")));
 }
 
 TEST_F(Compare, TextFitsEightyColumns) {
@@ -238,12 +240,12 @@ TEST_F(Compare, RefusesOtherInputsUnlessTheyAreMeant) {
     const char* after;
     const char* key;
   };
-  for (const Row& row :
-       {Row{"\"seed\": 1", "\"seed\": 2", "seed"}, Row{"\"width\": 160", "\"width\": 320", "size"},
-        Row{"\"profile\": \"levio\"", "\"profile\": \"next\"", "profile"},
-        Row{"\"first_frame\": 0", "\"first_frame\": 3", "frames"},
-        Row{"\"sha256\": \"", "\"sha256\": \"0", "data"}}) {
-    const std::string other = changed_run("manifest.json", row.before, row.after);
+  for (const Row& row : {Row{"\"seed\": 1", "\"seed\": 2", "seed"},
+                         Row{"\"image\": [160", "\"image\": [320", "size"},
+                         Row{"\"profile\": \"levio\"", "\"profile\": \"next\"", "profile"},
+                         Row{"\"first_frame\": 0", "\"first_frame\": 3", "frames"},
+                         Row{"sensor.yaml\":\"", "sensor.yaml\":\"0", "data"}}) {
+    const std::string other = changed_run("run.json", row.before, row.after);
     expect_refused(program({"compare", path("run"), other}),
                    {"cannot be compared", std::string("--allow ") + row.key});
     const ProgramResult allowed = program({"compare", path("run"), other, "--allow", row.key});
@@ -253,8 +255,7 @@ TEST_F(Compare, RefusesOtherInputsUnlessTheyAreMeant) {
 }
 
 TEST_F(Compare, NotesOtherVersions) {
-  const std::string other =
-      changed_run("manifest.json", "\"version\": \"0.1.0\"", "\"version\": \"0.0.9\"");
+  const std::string other = changed_run("run.json", "\"program\": \"0.1.0", "\"program\": \"0.0.9");
   const ProgramResult result = program({"compare", path("run"), other});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("note: program:"), std::string::npos) << result.out;
@@ -269,13 +270,13 @@ TEST_F(Compare, RefusesWhatIsNoRun) {
                  {"--allow 'sed'", "did you mean 'seed'"});
   expect_refused(program({"compare", path("run"), path("run"), "--format", "jsn"}),
                  {"did you mean 'json'"});
-  expect_refused(program({"compare", path("run"), changed_run("stats.json", "{", "[")}),
-                 {"stats.json"});
-  expect_refused(program({"compare", path("run"),
-                          changed_run("manifest.json", "\"seed\": 1", "\"seed\": \"x\"")}),
-                 {"manifest.json"});
-  expect_refused(program({"compare", path("run"), changed_run("cycles.csv", ",issue,", ",isue,")}),
-                 {"cycles.csv", "mechanism"});
+  expect_refused(program({"compare", path("run"), changed_run("run.json", "{", "[")}),
+                 {"run.json"});
+  expect_refused(
+      program({"compare", path("run"), changed_run("run.json", "\"seed\": 1", "\"seed\": \"x\"")}),
+      {"run.json"});
+  expect_refused(program({"compare", path("run"), changed_run("run.json", "\"issue ", "\"isue ")}),
+                 {"run.json"});
 }
 
 }  // namespace

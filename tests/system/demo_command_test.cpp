@@ -29,7 +29,7 @@ TEST(DemoCommand, ShowsBothProfilesOnAScreenAndLeavesThemWithAReport) {
   for (const char* part : {"levio: 1", "next: 1", "feature extraction", "optimiser iteration",
                            "L1 and L2", "one FPU", "240 MHz", "█", "speed-up", "30 frames on GAP9"})
     EXPECT_NE(shown.out.find(part), std::string::npos) << part << " is not in:\n" << shown.out;
-  for (const char* file : {"demo/report.html", "demo/next/stats.json"})
+  for (const char* file : {"demo/report.html", "demo/next/run.json"})
     EXPECT_TRUE(fs::exists(folder.path() / file)) << file;
   EXPECT_EQ(shown.out.rfind("verdict: ", 0), 0u) << shown.out;
   // What it suggests works, and nothing of others is replaced.

@@ -6,7 +6,7 @@
 
 #include "tests/support/run_program.h"
 #include "tests/support/scratch.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "traces/synthesis/synthetic.h"
 #include "traces/trajectories/trajectory.h"
 
@@ -71,8 +71,7 @@ void expect_parts(const std::string& text, const std::vector<std::string>& parts
 std::map<std::string, Json> statistics_in(const fs::path& file) {
   std::map<std::string, Json> values;
   const Json document = Json::parse(base::read_text_file(file));
-  for (const Json& entry : document.at("statistics"))
-    values[entry.at("name").get<std::string>()] = entry;
+  for (const auto& [name, statistic] : document.at("statistics").items()) values[name] = statistic;
   return values;
 }
 
@@ -114,17 +113,17 @@ TEST_F(EvalCommand, WritesTheFiguresItPrints) {
       eval({"--relative", "2", "--relative", "99", "--json", path("e.json")});
   EXPECT_EQ(result.status, 0) << result.err;
   std::map<std::string, Json> found = statistics_in(folder_ / "e.json");
-  const auto value = [&](const char* name) { return found.at(name).at("value").get<double>(); };
+  const auto value = [&](const char* name) { return found.at(name).at(0).get<double>(); };
   expect_parts(result.out,
                {fmt::format("ATE: {:.3f} m RMSE", value("accuracy.ate.rmse")), "attitude: tilt ",
                 fmt::format("{:.3f}", value("accuracy.relative.2m.translation.rmse")),
-                found.at("accuracy.ate.rmse").at("protocol").get<std::string>(),
-                found.at("accuracy.relative.2m.count").at("protocol").get<std::string>()});
+                found.at("accuracy.ate.rmse").at(3).get<std::string>(),
+                found.at("accuracy.relative.2m.count").at(3).get<std::string>()});
   EXPECT_EQ(value("accuracy.relative.2m.count"), 166);
   EXPECT_EQ(value("accuracy.matched"), 201);
   EXPECT_EQ(value("accuracy.longest_gap"), 0.05);
   EXPECT_EQ(value("accuracy.relative.99m.count"), 0);
-  EXPECT_TRUE(found.at("accuracy.relative.99m.translation.mean").at("value").is_null());
+  EXPECT_TRUE(found.at("accuracy.relative.99m.translation.mean").at(0).is_null());
   const Json document = Json::parse(base::read_text_file(folder_ / "e.json"));
   EXPECT_EQ(document.at("protocol").at("alignment"), "SE3");
   EXPECT_EQ(document.at("protocol").at("max_dt_ms"), 10);
@@ -137,12 +136,10 @@ TEST_F(EvalCommand, SetsSeveralEstimatesSideBySide) {
       eval({"--also", path("worse.tum"), "--relative", "5", "--json", path("both.json")});
   ASSERT_EQ(result.status, 0) << result.err;
   expect_parts(result.out, {"estimate", "drift over 5 m %", "est.tum", "worse.tum"});
-  const Json both = Json::parse(base::read_text_file(folder_ / "both.json"));
+  Json both = Json::parse(base::read_text_file(folder_ / "both.json"));
   ASSERT_EQ(both["evaluations"].size(), 2u);
   std::vector<double> errors;
-  for (const Json& one : both["evaluations"])
-    for (const Json& statistic : one["statistics"])
-      if (statistic["name"] == "accuracy.ate.rmse") errors.push_back(statistic["value"]);
+  for (Json& one : both["evaluations"]) errors.push_back(one["statistics"]["accuracy.ate.rmse"][0]);
   ASSERT_EQ(errors.size(), 2u);
   EXPECT_GT(errors[1], 2 * errors[0]);
   expect_parts(result.out, {fmt::format("{:.4f}", errors[0]), fmt::format("{:.4f}", errors[1])});
@@ -265,16 +262,15 @@ TEST_F(EvalCommand, AgreesWithTheRunThatMadeTheTrajectory) {
     return text.substr(begin, text.find("of path\n", begin) - begin);
   };
   EXPECT_EQ(ate(result.out), ate(ran.out));
-  const auto of_run = statistics_in(folder_ / "run/stats.json");
+  const auto of_run = statistics_in(folder_ / "run/run.json");
   const auto of_eval = statistics_in(folder_ / "e.json");
   int compared = 0;
   for (const auto& [name, entry] : of_run) {
     EXPECT_EQ(name.find("rotation"), std::string::npos) << "tilt and heading are meant";
     if (name.rfind("accuracy.", 0) != 0) continue;
     ++compared;
-    EXPECT_NEAR(entry.at("value").get<double>(), of_eval.at(name).at("value").get<double>(), 1e-5)
-        << name;
-    EXPECT_EQ(entry.at("protocol"), of_eval.at(name).at("protocol"));
+    EXPECT_NEAR(entry.at(0).get<double>(), of_eval.at(name).at(0).get<double>(), 1e-5) << name;
+    EXPECT_EQ(entry.at(3), of_eval.at(name).at(3)) << "the protocol";
   }
   EXPECT_EQ(compared, 8);  // of attitudes only eval says more
 }
@@ -288,8 +284,8 @@ TEST_F(EvalCommand, GivesTiltAndHeadingEverywhere) {
   expect_parts(shown.at("sentence").get<std::string>(), {", tilt 0.00°, heading 0.00° RMSE"});
   EXPECT_EQ(shown.dump().find("rotation"), std::string::npos);
   std::map<std::string, Json> found = statistics_in(folder_ / "errors.json");
-  EXPECT_NEAR(found.at("accuracy.tilt.rmse").at("value").get<double>(), 0, 1e-6);
-  EXPECT_NEAR(found.at("accuracy.heading.rmse").at("value").get<double>(), 0, 1e-6);
+  EXPECT_NEAR(found.at("accuracy.tilt.rmse").at(0).get<double>(), 0, 1e-6);
+  EXPECT_NEAR(found.at("accuracy.heading.rmse").at(0).get<double>(), 0, 1e-6);
   EXPECT_EQ(found.count("accuracy.rotation.rmse"), 0u);
   const std::string rows = eval({"--also", path("gt.tum")}).out;
   expect_parts(rows, {"tilt °", "heading °"});

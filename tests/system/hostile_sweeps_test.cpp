@@ -141,9 +141,9 @@ TEST_F(HostileSweeps, FoldersOfRunsAndNeighboursStay) {
 
 TEST_F(HostileSweeps, LaterVersionsAreNotGoneOnWith) {
   std::string text = read_text(path("sw/points.jsonl"));
-  text.replace(text.find("sweep 3"), 7, "sweep 99");
+  text.replace(text.find("sweep 4"), 7, "sweep 99");
   write_text(path("sw/points.jsonl"), text);
-  expect_refused(limited(sweep("sw")), {"version", "leviosim sweep 3"});
+  expect_refused(limited(sweep("sw")), {"version", "leviosim sweep 4"});
 }
 
 }  // namespace

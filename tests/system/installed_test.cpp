@@ -9,7 +9,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/scratch.h"
 #include "tests/support/text_lines.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 
 namespace leviosim::tools {
 namespace {
@@ -70,11 +70,8 @@ class Installed : public ::testing::Test {
   bool has(const char* file) const { return fs::exists(folder_ / file); }
   /// Of the stage's cycles on one core, those of code that was not measured.
   double unmeasured_in(const char* run) const {
-    const Json stats = Json::parse(read_text(folder_ / run / "stats.json"));
-    for (const Json& row : stats.at("statistics"))
-      if (row.at("name") == "stages.exposure.unmeasured") return row.at("value").get<double>();
-    ADD_FAILURE() << "stages.exposure.unmeasured is not in " << run;
-    return 0;
+    const Json stats = Json::parse(read_text(folder_ / run / "run.json"));
+    return stats.at("statistics").at("stages.exposure.unmeasured").at(0).get<double>();
   }
 
   Scratch folder_;

@@ -160,10 +160,9 @@ class Place {
                "edited");
   }
   void add_to(const fs::path& folder) {
-    constexpr const char* kNames[] = {"notes.md",   "manifest.json", "mav0",
-                                      "stats.json", "points.jsonl", "sweep.csv",
-                                      "deep/dive",  "x\ny",          "sweep.sqlite",
-                                      ".hidden",    "chosen"};
+    constexpr const char* kNames[] = {"notes.md",     "manifest.json", "mav0",      "run.json",
+                                      "points.jsonl", "sweep.csv",     "deep/dive", "x\ny",
+                                      "sweep.sqlite", ".hidden",       "chosen"};
     for (const char* name : kNames)
       if (rng_.below(4) == 0 && !fs::exists(fs::symlink_status(folder / name)))
         add_one(folder / name);

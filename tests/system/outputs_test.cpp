@@ -114,7 +114,7 @@ TEST_F(Outputs, ResultsThatAreReadStay) {
   };
   expect_kept_by_force(with({"--json", path("flown/trajectory.tum")}), {"--json"});
   expect_kept_by_force(
-      with({"--report", path("flown/stats.html"), "--json", path("flown/stats.json")}),
+      with({"--report", path("flown/stats.html"), "--json", path("flown/run.json")}),
       {"--json", "is a file of a run"});
   fs::copy(folder_ / "flown/trajectory.tum", folder_ / "est.tum");
   expect_kept_by_force({"eval", path("est.tum"), truth, "--json", path("est.tum")}, {"est.tum"});
@@ -167,7 +167,7 @@ TEST_F(Outputs, AFolderMadeMeanwhileStaysAndTheResultsGoBeside) {
     EXPECT_NE(result.out.find("results: " + path("toc-2")), std::string::npos) << result.out;
     EXPECT_EQ(result.out.find("next: "), std::string::npos) << result.out;
     EXPECT_EQ(read_text(folder_ / "toc/precious"), "x");
-    EXPECT_TRUE(fs::exists(folder_ / "toc-2/stats.json"));
+    EXPECT_TRUE(fs::exists(folder_ / "toc-2/run.json"));
     fs::remove_all(folder_ / "toc");
     fs::remove_all(folder_ / "toc-2");
   }
@@ -181,7 +181,7 @@ TEST_F(Outputs, ASecondWriterIsRefusedAtOnce) {
                  {"--out", "another leviosim is writing it", ".toc.leviosim"});
   first->send(SIGCONT);
   EXPECT_EQ(first->wait().status, 0);
-  EXPECT_EQ(picture_of(folder_.path()).count("toc/stats.json"), 1u);
+  EXPECT_EQ(picture_of(folder_.path()).count("toc/run.json"), 1u);
 }
 
 TEST_F(Outputs, WhatAKillLeftIsGoneAfterTheNextRun) {

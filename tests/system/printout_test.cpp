@@ -8,7 +8,7 @@
 #include "sim/outputs/file_system.h"
 #include "tests/support/run_program.h"
 #include "tools/app/cli/terminal.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/record.h"
 #include "tools/app/table/terminal_table.h"
 #include "traces/synthesis/synthetic.h"
 
@@ -96,31 +96,26 @@ TEST_F(PrintoutTest, WhatToTryNextIsTypedAsItStands) {
 /// Every run that a test makes through the program is held to this.
 TEST_F(PrintoutTest, AGreenVerdictOverAWrongMapOrALatePoseIsAFault) {
   fs::create_directories(path("verdicts"));
-  const auto fault = [&](const std::string& map, double error_m, double path_m, int latency_ms) {
-    Json list = Json::array();
-    const auto add = [&](const std::string& name, const Json& value) {
-      list.push_back({{"name", name}, {"value", value}});
-    };
-    add("verdict.time", "fits");
-    add("verdict.memory", "fits");
-    add("verdict.map", map);
-    add("run.frame_period", 50e6);
-    add("accuracy.ate.rmse", error_m);
-    add("accuracy.truth_length", path_m);
-    outputs::write_file_atomically(folder_ / "verdicts" / "stats.json",
-                                   json_text(statistics_document(list)));
+  const auto fault = [&](Grade map, double error_m, double path_m, int latency_ms) {
+    RunRecord record;
+    record.verdicts.list = {
+        {"time", Grade::good, {}}, {"memory", Grade::good, {}}, {"map", map, {}}};
+    record.statistics = {{.name = "run.frame_period", .unit = "ns", .value = 50e6},
+                         {.name = "accuracy.ate.rmse", .unit = "m", .value = error_m},
+                         {.name = "accuracy.truth_length", .unit = "m", .value = path_m}};
+    outputs::write_file_atomically(folder_ / "verdicts" / "run.json", record_text(record));
     outputs::write_file_atomically(folder_ / "verdicts" / "frames.csv",
                                    fmt::format("frame,latency_ns,end_ns\n0,1000000,7\n1,{}000000,"
                                                "900000000\n2,1000000,9\n",
                                                latency_ms));
     return testing::verdict_fault(path("verdicts"));
   };
-  EXPECT_EQ(fault("good", 0.9, 10, 99), "");
-  EXPECT_EQ(fault("good", 1.1, 10, 49), "green over an error of 11.0 % of the path");
-  EXPECT_EQ(fault("unreliable", 1.1, 10, 49), "");
-  EXPECT_EQ(fault("good", 0.9, 0.9, 49), "") << "a path too short to tell";
-  EXPECT_EQ(fault("good", 0.9, 10, 101), "green over a pose 2.0 periods after its image");
-  EXPECT_EQ(fault("not judged", 0.9, 10, 101), "");
+  EXPECT_EQ(fault(Grade::good, 0.9, 10, 99), "");
+  EXPECT_EQ(fault(Grade::good, 1.1, 10, 49), "green over an error of 11.0 % of the path");
+  EXPECT_EQ(fault(Grade::doubtful, 1.1, 10, 49), "");
+  EXPECT_EQ(fault(Grade::good, 0.9, 0.9, 49), "") << "a path too short to tell";
+  EXPECT_EQ(fault(Grade::good, 0.9, 10, 101), "green over a pose 2.0 periods after its image");
+  EXPECT_EQ(fault(Grade::unknown, 0.9, 10, 101), "");
 }
 
 TEST_F(PrintoutTest, ARunWithoutOptionsTakesTheChipAndNamesANewFolder) {
@@ -213,7 +208,7 @@ TEST_F(PrintoutTest, TablesFitTheTerminal) {
 /// Every command that prints results prints a document that says what it is, and nothing else.
 TEST_F(PrintoutTest, JsonIsADocumentOnStdout) {
   const ProgramResult replayed = replay("json", {"--json"});
-  EXPECT_EQ(replayed.out, base::read_text_file(folder_ / "json/stats.json"));
+  EXPECT_EQ(replayed.out, base::read_text_file(folder_ / "json/run.json"));
   const std::string est = path("run/trajectory.tum"), flight = path("flight");
   const std::vector<std::string> few{"--frames",    "0:30",   "--quiet", "--cache",
                                      path("cache"), "--seed", "1"};

@@ -51,8 +51,8 @@ TEST_F(ReplayCommand, TakesThePlatformOfTheRecordingByDefault) {
   record();
   ASSERT_EQ(program({"replay", path("run/work.trace"), "--out", path("again"), "--quiet"}).status,
             0);
-  EXPECT_EQ(base::read_text_file(folder_ / "run/stats.json"),
-            base::read_text_file(folder_ / "again/stats.json"));
+  EXPECT_EQ(base::read_text_file(folder_ / "run/run.json"),
+            base::read_text_file(folder_ / "again/run.json"));
   ASSERT_EQ(program({"replay", path("run"), "-p", "isa.ops.load_stream.issue=1.5", "--out",
                      path("slower"), "--quiet"})
                 .status,

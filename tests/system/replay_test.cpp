@@ -6,8 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "sim/work/op.h"
+#include "tests/tools/statistic_values.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/workload.h"
@@ -75,7 +76,7 @@ Replay replayed(const traces::WorkTrace& trace, const std::vector<std::string>& 
 
 /// Everything that a run folder holds of a run, but the manifest.
 std::vector<std::string> files_of(const RunResult& run) {
-  return {statistics_text(run),       csv_text(stage_rows(run)),
+  return {testing::figures_text(run), csv_text(stage_rows(run)),
           csv_text(frame_rows(run)),  csv_text(memory_rows(run)),
           csv_text(energy_rows(run)), traces::format_tum(run.trajectory)};
 }
@@ -138,9 +139,9 @@ TEST_F(Replayed, OnAChipWithAcceleratorsIsTheLiveRunThere) {
     // What is computed is the same.
     EXPECT_EQ(traces::format_tum(there.run.trajectory),
               traces::format_tum(on_gap9().run.trajectory));
-    EXPECT_NE(statistics_text(there.run).find(".served."), std::string::npos);
+    EXPECT_NE(testing::figures_text(there.run).find(".served."), std::string::npos);
   }
-  EXPECT_EQ(statistics_text(on_gap9().run).find(".served."), std::string::npos);
+  EXPECT_EQ(testing::figures_text(on_gap9().run).find(".served."), std::string::npos);
 }
 
 TEST_F(Replayed, OtherNumbersOfCoresHaveTracesOfTheirOwn) {

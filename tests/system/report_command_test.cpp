@@ -8,9 +8,9 @@
 
 #include "sim/base/csv.h"
 #include "tests/support/program_suite.h"
-#include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/json_reader.h"
+#include "tools/app/record/json_reader.h"
+#include "tools/app/record/record.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
@@ -123,12 +123,9 @@ TEST_F(Report, ErrorsOfTheTableAreThoseOfTheAte) {
   double squares = 0;
   for (const Json& error : errors["position_error_m"]) squares += std::pow(error.get<double>(), 2);
   const double count = static_cast<double>(errors["position_error_m"].size());
-  const Json statistics = Json::parse(base::read_text_file(path("a/stats.json")));
-  std::optional<double> ate;
-  for (const Json& entry : statistics["statistics"])
-    if (entry["name"] == "accuracy.ate.rmse") ate = entry["value"].get<double>();
-  ASSERT_TRUE(ate);
-  EXPECT_NEAR(*ate, std::sqrt(squares / count), 1e-8);
+  const Json statistics = Json::parse(base::read_text_file(path("a/run.json")));
+  const double ate = statistics.at("statistics").at("accuracy.ate.rmse").at(0).get<double>();
+  EXPECT_NEAR(ate, std::sqrt(squares / count), 1e-8);
 }
 
 /// A page in frames of the browser's window, which may be narrower than a window can be. Each frame
@@ -259,7 +256,7 @@ TEST_F(InBrowser, APageOfStagesWithNamesOfScriptsIsToo) {
   fs::copy(path("a"), path("names"));
   fs::remove(path("names/.leviosim-files"));
   for (const char* name :
-       {"frames.csv", "stages.csv", "cycles.csv", "memory.csv", "energy.csv", "stats.json"}) {
+       {"frames.csv", "stages.csv", "cycles.csv", "memory.csv", "energy.csv", "run.json"}) {
     std::string text = base::read_text_file(path("names") + '/' + name);
     for (const auto& [stage, other] :
          {std::pair{"feature extraction", "constructor"},

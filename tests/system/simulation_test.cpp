@@ -10,8 +10,9 @@
 #include "platform_models/loader/loader.h"
 #include "sim/base/error.h"
 #include "tests/support/account_checks.h"
+#include "tests/tools/statistic_values.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
@@ -75,7 +76,7 @@ TEST_F(Simulated, CountingComputesWhatTheNativePipelineComputes) {
 
 TEST_F(Simulated, TheSameRunTwiceGivesTheSameStatistics) {
   const RunRequest r = request(flight());
-  EXPECT_EQ(statistics_text(run(r)), statistics_text(run(r)));
+  EXPECT_EQ(testing::figures_text(run(r)), testing::figures_text(run(r)));
 }
 
 TEST_F(Simulated, ACoreAloneIsNotFasterThanTwoAndTwoNotThanEight) {

@@ -336,14 +336,17 @@ TEST(SweepFront, IsWhatComparingAllPairsGives) {
   EXPECT_GT(front.size(), 3u);
 }
 
-TEST(Outcome, ComesBackWithEveryBit) {
-  const Outcome result{"", {{"a", "ms", 0.1 + 0.2}, {"b", "1", 3}}};
-  const std::optional<Outcome> again = parse_outcome(to_text(result));
-  ASSERT_TRUE(again);
-  EXPECT_EQ(to_text(*again), to_text(result));
-  EXPECT_EQ(again->figures[0].value, 0.1 + 0.2);
-  for (const char* broken : {"", "{}", "[1]", "{\"format\":\"other\"}"})
-    EXPECT_FALSE(parse_outcome(broken)) << broken;
+TEST(RunRecord, ComesBackWithEveryBit) {
+  RunRecord result;
+  result.statistics = {{.name = "a", .unit = "ms", .value = 0.1 + 0.2},
+                       {.name = "b", .unit = "1", .value = 3}};
+  const std::string text = json_text(record_json(result));
+  const RunRecord again = record_of_json("r", Json::parse(text), Level::figures);
+  EXPECT_EQ(json_text(record_json(again)), text);
+  EXPECT_EQ(again.value("a"), 0.1 + 0.2);
+  for (const char* broken : {"{}", "{\"statistics\":3}", "{\"statistics\":{\"a\":[]}}",
+                             "{\"statistics\":{\"a\":[\"1\",\"ms\"]}}"})
+    expect_input_error([&] { record_of_json("r", Json::parse(broken), Level::figures); }, {"r: "});
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "tests/support/run_program.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/study/sweep/sweep_store.h"
 #include "traces/synthesis/synthetic.h"
 

@@ -4,7 +4,7 @@
 #include "platform_models/loader/variants.h"
 #include "tests/support/program_suite.h"
 #include "tests/tools/timeline_checks.h"
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/timeline/requested_timeline.h"
 #include "traces/synthesis/synthetic.h"
@@ -146,7 +146,7 @@ TEST_F(TimelineOfFlight, LeavesJsonOnStdoutAsItIs) {
       program({"replay", path("run"), "--out", path("json"), "--quiet", "--json", "--timeline",
                path("json.pftrace"), "--timeline-frames", "0:1"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(result.out, text("json/stats.json"));
+  EXPECT_EQ(result.out, text("json/run.json"));
   EXPECT_TRUE(fs::exists(path("json.pftrace")));
 }
 

@@ -218,11 +218,10 @@ TEST(Tuning, TheCommandOfSeveralSeedsIsALoopOverThem) {
 TEST(RunOutcome, KeepsAllOfAClosedLoop) {
   const Example example;
   const RunOutcome& outcome = example.points[1].outcomes[0];
-  const std::optional<Outcome> kept = parse_outcome(to_text(figures_of(outcome)));
-  ASSERT_TRUE(kept);
-  const RunOutcome read = run_outcome_of(*kept);
+  const RunOutcome read =
+      run_outcome_of(record_of_json("", record_json(record_of(outcome)), Level::figures));
   ASSERT_TRUE(read.loop);
-  EXPECT_EQ(to_text(figures_of(read)), to_text(figures_of(outcome)));
+  EXPECT_EQ(record_json(record_of(read)), record_json(record_of(outcome)));
   EXPECT_EQ(read.loop->camera.latency.p99_ns, 30'000'000);
   EXPECT_EQ(read.loop->power_w->high, 0.015);
 }
@@ -305,8 +304,8 @@ TEST_F(TuneCommand, FindsFinishedLoopsAgainAndConfirmsTheChosenOne) {
                                          path(""), path("bin"), line);
   EXPECT_EQ(std::system(pasted.c_str()), 0)  // NOLINT: the command is leviosim's own
       << base::read_text_file(folder_ / "pasted.txt");
-  EXPECT_TRUE(fs::exists(folder_ / "chosen-1/stats.json"));
-  for (const char* name : {"frames.csv", "stats.json", "trajectory.tum", "platform.yaml"})
+  EXPECT_TRUE(fs::exists(folder_ / "chosen-1/run.json"));
+  for (const char* name : {"frames.csv", "run.json", "trajectory.tum", "platform.yaml"})
     EXPECT_EQ(base::read_text_file(folder_ / "chosen-2" / name),
               files[std::string("chosen/") + name])
         << name;
@@ -342,7 +341,7 @@ TEST_F(TuneCommand, HasThreeSeedsByDefaultAndHoldsTheChosenPointAgainstABudget) 
   for (const char* part : {"3 closed loops", "for seed in 1 2 3; do", "L1 peak <= 1 kB", "NOT MET",
                            "medians over 3 seeds", "3 limits, 2 not met"})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in:\n" << result.out;
-  EXPECT_TRUE(fs::exists(folder_ / "out/chosen/stats.json"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/chosen/run.json"));
   const ProgramResult none =
       run_program(folder_.path(), words({"--force", "--clock", "6", "--ate", "0.000001",
                                          "--miss-rate", "0", "--budget", path("budgets.yaml")}));

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "tests/support/program_suite.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/table/terminal_table.h"
 #include "traces/synthesis/synthetic.h"
 
@@ -257,8 +257,8 @@ TEST_F(WhatIfCommand, InlineVariantsArePlatformsEverywhere) {
   expect_done({"replay", path("run"), "--platform", chip, "--out", path("one"), "--quiet"});
   expect_done(
       {"replay", path("run"), "-p", "cluster.fpu.units=1", "--out", path("same"), "--quiet"});
-  EXPECT_EQ(base::read_text_file(path("one/stats.json")),
-            base::read_text_file(path("same/stats.json")));
+  EXPECT_EQ(base::read_text_file(path("one/run.json")),
+            base::read_text_file(path("same/run.json")));
   std::ofstream(path("plan.yaml"))
       << "base: { trace: run }\npoints: { grid: { platform: [gap9, \"" << chip << "\"] } }\n";
   const ProgramResult swept =

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/run_program.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "workload/vio/profile.h"
 

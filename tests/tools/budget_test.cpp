@@ -28,7 +28,9 @@ RunRecord record_of(const RunResult& run = example_run()) {
        false,
        2e6,
        {{"detect", "issue", "int_alu", 1.5e6, 1e6}, {"", "fpu", "", 5e5, 0}}}};
-  return make_record("run", manifest, run, parts);
+  RunRecord record = make_record("run", manifest, run);
+  record.cycles = parts;
+  return record;
 }
 
 /// Latencies of 10, 20, 60, 30, 40 ms; 64 kB of L1; ATE 0.176 m; 1000 kcycles of extraction.
@@ -265,24 +267,25 @@ TEST(Budget, AFirstBudgetIsMetAndTight) {
 
 TEST(Baseline, IsReadBackAndStandsForItsRun) {
   const RunRecord run = record_of();
-  const std::string text = baseline_text(run, nullptr);
+  const std::string text = record_text(reduced(run, Level::kept));
   EXPECT_LT(text.size(), 10'000u);
-  const RunRecord read = parse_baseline("base.json", text);
+  const RunRecord read = parse_record("base.json", text, Level::kept);
   EXPECT_EQ(read.facts, run.facts);
   EXPECT_EQ(read.value("frame.latency.p99"), run.value("frame.latency.p99"));
   EXPECT_TRUE(met(of_stage("*", "cycles <= +0 %"), &read));
   expect_input_error([&] { met(one("stages.*.speedup >= -1 %"), &read); }, {"budget record"});
   const Budget b = one("stages.*.speedup >= -1 %");
-  const RunRecord with = parse_baseline("base.json", baseline_text(run, &b));
+  const RunRecord with = parse_record(
+      "base.json", record_text(reduced(run, Level::kept, figures_in(b, run))), Level::kept);
   EXPECT_TRUE(met(b, &with));
 }
 
 TEST(Baseline, RefusesWhatIsNone) {
-  const std::string text = baseline_text(record_of(), nullptr);
+  const std::string text = record_text(reduced(record_of(), Level::kept));
   for (const std::string& bad :
        {std::string(), std::string("{}"), std::string("[]"), text.substr(0, text.size() / 2),
-        std::string("{\"format\": \"leviosim baseline\", \"version\": 2}")})
-    expect_input_error([&] { parse_baseline("base.json", bad); }, {"base.json"});
+        std::string("{\"format\": \"leviosim run\", \"version\": 2}")})
+    expect_input_error([&] { parse_record("base.json", bad, Level::kept); }, {"base.json"});
 }
 
 /// Bytes changed, removed and doubled at random: every text is read or refused with its name.
@@ -297,12 +300,10 @@ TEST(Baseline, NoTextIsTooBroken) {
       {"budgets:\n  - platform: gap9\n    owner: x\n    limits:\n      - L1 peak <= 110 kB\n"
        "      - stage: \"feat*\"\n        limit: cycles <= +3 %\n",
        [&](const std::string& text) { check_budget(run, parse_budget("f", text), &run); }},
-      {baseline_text(run, nullptr),
-       [&](const std::string& text) {
-         const RunRecord baseline = parse_baseline("f", text);
+      {record_text(reduced(run, Level::kept)), [&](const std::string& text) {
+         const RunRecord baseline = parse_record("f", text, Level::kept);
          check_budget(run, of_stage("*", "cycles <= -1 %"), &baseline);
-       }},
-      {cycles_csv(run.cycles), [](const std::string& text) { parse_cycles("f", text); }}};
+       }}};
   for (const Reader& reader : readers)
     for (int round = 0; round < 400; ++round) {
       std::string text = reader.text;

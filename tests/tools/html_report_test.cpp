@@ -5,7 +5,7 @@
 #include "tests/tools/example_run.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
@@ -14,19 +14,15 @@ namespace {
 using testing::example_run;
 using traces::testing::expect_input_error;
 
-ReportedRun reported(const RunResult& run, const std::string& name = "out") {
+RunFolder reported(const RunResult& run, const std::string& name = "out") {
   Manifest manifest;
   manifest.command_line = {"run"};
   manifest.platform = "gap9";
   manifest.data = "flight";
-  RunFiles files = run_files(run, manifest, "");
-  return {record_of_files(name, files), files};
+  return run_folder(name, run, manifest, "");
 }
 
-Json json_of(const RunResult& run) {
-  const ReportedRun r = reported(run);
-  return run_json(r.record, r.files);
-}
+Json json_of(const RunResult& run) { return run_json(reported(run)); }
 
 /// The example with latencies below its period of 50 ms.
 RunResult punctual_run() {
@@ -51,9 +47,9 @@ TEST(Verdict, OfAFolderIsThatOfTheRunInMemory) {
   run.ate->size_ratio = 1.4;
   run.ate->located_rmse_m = 0.9;
   const RunFigures in_memory = figures_of(run);
-  const RunRecord read = reported(run).record;
-  EXPECT_EQ(verdicts(read).text(), verdicts(in_memory).text());
-  EXPECT_NE(verdicts(read).text().find("the scale is 1.40"), std::string::npos);
+  const RunRecord read = parse_record("run.json", record_text(reported(run).record), Level::all);
+  EXPECT_EQ(read.verdicts.text(), in_memory.verdicts.text());
+  EXPECT_NE(read.verdicts.text().find("the scale is 1.40"), std::string::npos);
   ASSERT_EQ(read.statistics.size(), in_memory.statistics.size());
   for (std::size_t i = 0; i < read.statistics.size(); ++i)
     EXPECT_EQ(read.statistics[i].value, in_memory.statistics[i].value) << read.statistics[i].name;
@@ -127,9 +123,20 @@ TEST(KeyFigures, ShowWhatRowsCompute) {
 }
 
 TEST(RunJson, RefusesATableThatLacksAColumn) {
-  ReportedRun run = reported(example_run());
-  run.files[kMemoryFile] = "memory,owner\nL1,x\n";
-  expect_input_error([&] { run_json(run.record, run.files); }, {"out/memory.csv", "what"});
+  RunFolder run = reported(example_run());
+  run.tables.at(kMemoryFile) = read_csv("", "memory,owner\nL1,x\n");
+  expect_input_error([&] { run_json(run); }, {"out/memory.csv", "what"});
+}
+
+TEST(RunJson, OfAFolderIsThatOfTheRunInMemory) {
+  const traces::testing::TempFolder folder;
+  const RunFolder run = reported(example_run(), (folder / "out").string());
+  {
+    outputs::OutputFolder out({.option = "--out", .path = run.record.name});
+    write_run_folder(out, run);
+    EXPECT_FALSE(out.commit());
+  }
+  EXPECT_EQ(run_json(read_run_folder(run.record.name, true)), run_json(run));
 }
 
 TEST(RunJson, IsTheSameOnAnyHost) {
@@ -140,7 +147,7 @@ TEST(RunJson, IsTheSameOnAnyHost) {
 
 TEST(Page, NoTextOfTheDataEndsItsElement) {
   const std::string name = "</script><script>alert(1)</script><!--";
-  const ReportedRun run = reported(example_run(), name);
+  const RunFolder run = reported(example_run(), name);
   const std::string page = html_page(runs_report({run}, {}, nullptr));
   EXPECT_EQ(page.find("alert(1)</script>"), std::string::npos);
   EXPECT_NE(page.find("\\u003c/script>\\u003cscript>alert(1)"), std::string::npos);

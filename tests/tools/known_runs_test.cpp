@@ -12,7 +12,8 @@
 #include "sim/base/error.h"
 #include "sim/chip/same_cycles.h"
 #include "sim/work/op.h"
-#include "tools/app/report/statistics.h"
+#include "tests/tools/statistic_values.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/table/table_files.h"
 
@@ -71,7 +72,7 @@ traces::WorkTrace some_trace(bool external) {
 }
 
 std::string text_of(const Replay& replay) {
-  std::string text = statistics_text(replay.run) + csv_text(frame_rows(replay.run)) +
+  std::string text = testing::figures_text(replay.run) + csv_text(frame_rows(replay.run)) +
                      csv_text(energy_rows(replay.run));
   for (const FrameComparison& f : replay.frames)
     text += fmt::format("{} {} {} {} {}\n", f.frame, f.replayed.waited_ns, f.replayed.seen,

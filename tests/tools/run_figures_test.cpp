@@ -9,7 +9,7 @@
 #include "sim/work/op.h"
 #include "tests/tools/example_run.h"
 #include "tests/tools/statistic_values.h"
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/result/summary.h"
 
@@ -31,7 +31,7 @@ RunResult long_loop() {
 }
 
 TEST(RunFigures, EveryPercentileOfLatencyIsItsOwn) {
-  const Json document = statistics(long_loop());
+  const RunFigures document = figures_of(long_loop());
   EXPECT_EQ(value(document, "frame.latency.p50"), 100'000);
   EXPECT_EQ(value(document, "frame.latency.p95"), 190'000);
   EXPECT_EQ(value(document, "frame.latency.p99"), 198'000);
@@ -40,7 +40,7 @@ TEST(RunFigures, EveryPercentileOfLatencyIsItsOwn) {
 
 TEST(FigureRows, DifferAndSayWhatTheyCompute) {
   const RunResult run = testing::example_run();
-  const Json document = statistics(run);
+  const RunFigures document = figures_of(run);
   std::set<std::string_view> statistics_of_rows, phrases, titles;
   int computed = 0;
   for (const FigureRow& row : figure_rows()) {
@@ -52,7 +52,7 @@ TEST(FigureRows, DifferAndSayWhatTheyCompute) {
     ++computed;
     EXPECT_FALSE(row.title.empty() || row.meaning.empty()) << row.statistic;
     const double of = row.of(run).value();
-    EXPECT_NEAR(value(document, std::string(row.statistic)).get<double>(), of, 1e-6 * of);
+    EXPECT_NEAR(value(document, std::string(row.statistic)).value(), of, 1e-6 * of);
   }
   EXPECT_GT(computed, 0);
 }
@@ -60,7 +60,7 @@ TEST(FigureRows, DifferAndSayWhatTheyCompute) {
 TEST(RunFigures, AnOpenLoopHasPercentilesOfLatencyToo) {
   RunResult open = long_loop();
   open.camera.reset();
-  const Json document = statistics(open);
+  const RunFigures document = figures_of(open);
   EXPECT_EQ(value(document, "frame.latency.p95"), 190'000);
   EXPECT_EQ(value(document, "frame.latency.worst"), 200'000);
 }
@@ -70,11 +70,11 @@ TEST(RunFigures, ALatencyOfExactlyThePeriodIsInTime) {
   EXPECT_FALSE(is_late(testing::frame(0, PoseSource::Epnp, false, run.frame_period_ns), run));
   EXPECT_TRUE(is_late(testing::frame(0, PoseSource::Epnp, false, run.frame_period_ns + 1), run));
   run.frames = {testing::frame(0, PoseSource::Epnp, false, run.frame_period_ns)};
-  EXPECT_EQ(value(statistics(run), "latency.epnp.over_period"), 0);
+  EXPECT_EQ(value(figures_of(run), "latency.epnp.over_period"), 0);
 }
 
 TEST(RunFigures, TheWorstIsTheLongestOfSeveralAndNoSum) {
-  const Json document = statistics(testing::example_run());
+  const RunFigures document = figures_of(testing::example_run());
   EXPECT_EQ(value(document, "stages.feature_extraction.cycles.parallel.sum"), 2'000'000);
   EXPECT_EQ(value(document, "stages.feature_extraction.cycles.parallel.worst"), 1'200'000);
   EXPECT_EQ(value(document, "latency.epnp.worst"), 40'000'000);  // of two frames: 30 and 40 ms

@@ -61,7 +61,7 @@ Manifest example_manifest() {
 
 void write_to(const fs::path& folder, const RunResult& run, const std::string& platform) {
   outputs::OutputFolder out({.option = {}, .path = folder.string()});
-  write_run_folder(out, run, example_manifest(), platform);
+  write_run_folder(out, run_folder("out", run, example_manifest(), platform));
   EXPECT_FALSE(out.commit());
 }
 
@@ -156,7 +156,7 @@ TEST(RunFolder, HoldsFilesThatParse) {
   const platform::ResolvedPlatform platform = platform::resolve_platform("gap9");
   write_to(folder.path(), example_run(), platform::to_yaml(platform));
   const auto read = [&](const char* name) { return base::read_text_file(folder / name); };
-  EXPECT_EQ(Json::parse(read("stats.json")), statistics(example_run()));
+  EXPECT_EQ(read("run.json"), record_text(make_record("r", example_manifest(), example_run())));
   const Json manifest = Json::parse(read("manifest.json"));
   EXPECT_EQ(manifest.at("seed"), 7);
   EXPECT_EQ(manifest.at("platform").at("overrides").at(0), "cluster.workers=4");
@@ -198,7 +198,7 @@ TEST(RunFolder, OfANativeRunHasNoFilesAboutAChip) {
   std::set<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
     names.insert(entry.path().filename().string());
-  EXPECT_EQ(names, (std::set<std::string>{outputs::kRecordName, "manifest.json", "stats.json",
+  EXPECT_EQ(names, (std::set<std::string>{outputs::kRecordName, "manifest.json", "run.json",
                                           "frames.csv", "trajectory.tum"}));
   EXPECT_TRUE(Json::parse(base::read_text_file(folder / "manifest.json")).at("platform").is_null());
 }
@@ -207,9 +207,10 @@ TEST(RunFolder, NothingIsLeftWhenWritingFails) {
   const TempFolder folder;
   {
     outputs::OutputFolder out({.option = "--out", .path = (folder / "out").string()});
-    out.write("stats.json", "x");  // where a file is to be written
+    out.write("run.json", "x");  // where a file is to be written
     traces::testing::expect_input_error(
-        [&] { write_run_folder(out, example_run(), example_manifest(), "x"); }, {"stats.json"});
+        [&] { write_run_folder(out, run_folder("", example_run(), example_manifest(), "x")); },
+        {"run.json"});
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }

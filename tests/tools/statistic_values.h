@@ -1,24 +1,24 @@
-// Statistics of a document by name.
+// Statistics of a run by name.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/record.h"
+#include "tools/app/record/statistics.h"
 
 namespace leviosim::tools::testing {
 
-/// Null, and a failure, if there is none.
-inline Json statistic(const Json& document, const std::string& name) {
-  for (const Json& entry : document.at("statistics"))
-    if (entry.at("name") == name) return entry;
-  ADD_FAILURE() << "no statistic " << name;
-  return {};
+/// Nothing, and a failure, if there is no such statistic.
+inline std::optional<double> value(const RunFigures& run, const std::string& name) {
+  const Statistic* found = run.find(name);
+  EXPECT_NE(found, nullptr) << name;
+  return found == nullptr ? std::nullopt : found->value;
 }
 
-inline Json value(const Json& document, const std::string& name) {
-  return statistic(document, name).at("value");
-}
+/// All figures of a run as its record has them.
+inline std::string figures_text(const RunResult& run) { return record_text({figures_of(run)}); }
 
 }  // namespace leviosim::tools::testing

@@ -1,7 +1,8 @@
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "tests/tools/example_run.h"
@@ -12,23 +13,21 @@ namespace leviosim::tools {
 namespace {
 
 using testing::example_run;
-using testing::statistic;
 using testing::value;
 
 TEST(Statistics, EachHasNameUnitDescriptionValueAndNamesAreUnique) {
   std::set<std::string> names;
-  const Json document = statistics(example_run());
-  ASSERT_FALSE(document.at("statistics").empty());
-  for (const Json& entry : document.at("statistics")) {
-    for (const char* key : {"name", "unit", "description", "value"})
-      EXPECT_TRUE(entry.contains(key)) << entry.dump();
-    EXPECT_FALSE(entry.at("description").get<std::string>().empty()) << entry.dump();
-    EXPECT_TRUE(names.insert(entry.at("name").get<std::string>()).second) << entry.at("name");
+  const RunFigures figures = figures_of(example_run());
+  ASSERT_FALSE(figures.statistics.empty());
+  for (const Statistic& statistic : figures.statistics) {
+    EXPECT_FALSE(statistic.unit.empty()) << statistic.name;
+    EXPECT_FALSE(statistic.description.empty()) << statistic.name;
+    EXPECT_TRUE(names.insert(statistic.name).second) << statistic.name;
   }
 }
 
 TEST(Statistics, ValuesAreThoseOfTheRun) {
-  const Json document = statistics(example_run());
+  const RunFigures document = figures_of(example_run());
   EXPECT_EQ(value(document, "stages.feature_extraction.calls"), 2);
   EXPECT_EQ(value(document, "stages.feature_extraction.cycles.single.sum"), 8'000'000);
   EXPECT_EQ(value(document, "stages.feature_extraction.cycles.single.mean"), 4e6);
@@ -48,7 +47,7 @@ TEST(Statistics, ValuesAreThoseOfTheRun) {
 TEST(Statistics, FactsOfFramesAreSummedUp) {
   RunResult run = example_run();
   run.frames[1].map_restarts = run.frames[4].map_restarts = 1;
-  const Json document = statistics(run);
+  const RunFigures document = figures_of(run);
   EXPECT_EQ(value(document, "frames.map_restarts.sum"), 2);
   EXPECT_EQ(value(document, "frames.landmarks.sum"), 5 * 200);
 }
@@ -62,53 +61,52 @@ TEST(Statistics, EveryFrameHasASourceAndAKind) {
     run.frames.push_back(testing::frame(k, source, false, 10'000'000));
   }
   EXPECT_EQ(vio::source_named("guessed"), std::nullopt);
-  const Json document = statistics(run);
+  const RunFigures document = figures_of(run);
   std::int64_t sources = 0, kinds = 0;
-  for (const Json& entry : document.at("statistics")) {
-    const auto name = entry.at("name").get<std::string>();
-    if (name.starts_with("frames.source.")) sources += entry.at("value").get<std::int64_t>();
-    if (name.starts_with("latency.") && name.ends_with(".frames"))
-      kinds += entry.at("value").get<std::int64_t>();
+  for (const Statistic& s : document.statistics) {
+    if (s.name.starts_with("frames.source.")) sources += std::llround(s.value.value());
+    if (s.name.starts_with("latency.") && s.name.ends_with(".frames"))
+      kinds += std::llround(s.value.value());
   }
   EXPECT_EQ(sources, std::ssize(run.frames));
   EXPECT_EQ(kinds, std::ssize(run.frames));
 }
 
 TEST(Statistics, WhatDoesNotExistIsNull) {
-  const Json document = statistics(example_run());
-  EXPECT_TRUE(value(document, "stages.epnp_ransac.speedup").is_null());
-  EXPECT_TRUE(value(document, "stages.epnp_ransac.cycles.parallel.mean").is_null());
-  EXPECT_TRUE(value(document, "latency.epnp_keyframe.mean").is_null());
+  const RunFigures document = figures_of(example_run());
+  EXPECT_FALSE(value(document, "stages.epnp_ransac.speedup"));
+  EXPECT_FALSE(value(document, "stages.epnp_ransac.cycles.parallel.mean"));
+  EXPECT_FALSE(value(document, "latency.epnp_keyframe.mean"));
 }
 
 TEST(Statistics, BreakdownPartsAddUpToTheirTotal) {
-  const Json document = statistics(example_run());
+  const RunFigures document = figures_of(example_run());
   const std::string prefix = "stages.feature_extraction.breakdown.";
   double sum = 0;
   for (const sim::MechanismInfo& part : breakdown_parts(example_run()))
-    sum += value(document, prefix + std::string(part.key)).get<double>();
-  EXPECT_DOUBLE_EQ(sum, value(document, prefix + "total").get<double>());
+    sum += value(document, prefix + std::string(part.key)).value();
+  EXPECT_DOUBLE_EQ(sum, value(document, prefix + "total").value());
 }
 
 TEST(Statistics, AccuracyNeverAppearsWithoutItsProtocol) {
   const RunResult run = example_run();
-  const Json document = statistics(run);  // named, because the loop keeps no temporary alive
   int figures = 0;
-  for (const Json& entry : document.at("statistics"))
-    if (entry.at("name").get<std::string>().rfind("accuracy.", 0) == 0) {
+  const RunFigures known = figures_of(run);
+  for (const Statistic& s : known.statistics)
+    if (s.name.starts_with("accuracy.")) {
       ++figures;
-      EXPECT_EQ(entry.at("protocol"), run.ate->protocol);
+      EXPECT_EQ(s.protocol, run.ate->protocol);
     }
   EXPECT_GE(figures, 5);
 }
 
 TEST(Statistics, DependNeitherOnTheHostNorOnTiming) {
   RunResult run = example_run();
-  const std::string before = statistics(run).dump();
+  const std::string before = testing::figures_text(run);
   run.host_seconds = 99;
-  EXPECT_EQ(statistics(run).dump(), before);
+  EXPECT_EQ(testing::figures_text(run), before);
   run.timed = false;
-  EXPECT_EQ(statistics(run).dump().find("cycles"), std::string::npos);
+  EXPECT_EQ(testing::figures_text(run).find("cycles"), std::string::npos);
 }
 
 }  // namespace

@@ -45,9 +45,22 @@ void publish(SweepStore& store, const TempFolder& folder) {
   EXPECT_FALSE(store.publish(csv).has_value());
 }
 
-Outcome result_of(double latency_ms, double l1_bytes = 1000) {
-  return {"",
-          {{"objective.frame_time", "ms", latency_ms}, {"objective.l1_peak", "byte", l1_bytes}}};
+RunRecord result_of(double latency_ms, double l1_bytes = 1000) {
+  RunRecord record;
+  record.statistics = {{.name = "frame.time.mean", .unit = "ns", .value = latency_ms * 1e6},
+                       {.name = "memory.l1.peak", .unit = "byte", .value = l1_bytes}};
+  return record;
+}
+
+RunRecord failed(const std::string& why) {
+  RunRecord record;
+  record.failure = why;
+  return record;
+}
+
+RunRecord without_a_figure(RunRecord record) {
+  record.statistics.pop_back();
+  return record;
 }
 
 double latency(SweepStore& store, int point) {
@@ -96,9 +109,9 @@ TEST(SweepStore, RefusesOtherVersions) {
   const TempFolder folder;
   SweepStore(folder.path(), "plan", plan_of({100})).put(1, result_of(5));
   const std::string text = base::read_text_file(folder / kSweepFile);
-  for (const char* version : {"1", "2", "4", "30"}) {
+  for (const char* version : {"1", "3", "5", "30"}) {
     std::string other = text;
-    other.replace(other.find("sweep 3"), 7, std::string("sweep ") + version);
+    other.replace(other.find("sweep 4"), 7, std::string("sweep ") + version);
     outputs::write_file_atomically(folder / kSweepFile, other);
     expect_input_error([&] { SweepStore(folder.path()); }, {"not known", kSweepFormat});
   }
@@ -120,7 +133,7 @@ TEST(SweepStore, AMergeTakesWhatIsMissing) {
   SweepStore theirs(b.path(), "plan", plan_of({100, 200, 300}));
   ours.put(1, result_of(5));
   theirs.put(1, result_of(5));  // the same, by both
-  theirs.put(3, {"too little L1", {}});
+  theirs.put(3, failed("too little L1"));
   ours.merge(theirs);
   EXPECT_EQ(ours.finished(), (std::set<int>{1, 3}));
   EXPECT_EQ(ours.outcomes().back().failure, "too little L1");
@@ -129,11 +142,11 @@ TEST(SweepStore, AMergeTakesWhatIsMissing) {
 TEST(SweepStore, AMergeRefusesDifferentResultsOfAPointAndTakesNothing) {
   struct {
     const char* what;
-    Outcome result;
+    RunRecord result;
   } const others[] = {
       {"another value", result_of(5.5)},
-      {"a failure", {"too little L1", {}}},
-      {"a figure less", {"", {result_of(5).figures[0]}}},
+      {"a failure", failed("too little L1")},
+      {"a figure less", without_a_figure(result_of(5))},
   };
   for (const auto& other : others) {
     SCOPED_TRACE(other.what);
@@ -161,10 +174,11 @@ TEST(SweepStore, AMergeRefusesAnotherPlan) {
 
 /// Points that several jobs compute are finished in any order, and have figures of their own.
 TEST(SweepStore, TheTableDoesNotDependOnTheOrderInWhichPointsWereFinished) {
-  std::map<int, Outcome> results{
-      {1, result_of(5)}, {2, {"too little L1", {}}}, {3, result_of(3)}, {4, result_of(4, 900)}};
-  results[3].figures.insert(results[3].figures.begin(), {"accuracy.tilt", "deg", 0.5});
-  results[4].figures.push_back({"accuracy.ate", "m", 0.25});
+  std::map<int, RunRecord> results{
+      {1, result_of(5)}, {2, failed("too little L1")}, {3, result_of(3)}, {4, result_of(4, 900)}};
+  results[3].statistics.insert(results[3].statistics.begin(),
+                               {.name = "accuracy.tilt", .unit = "deg", .value = 0.5});
+  results[4].statistics.push_back({.name = "accuracy.ate", .unit = "m", .value = 0.25});
   const std::vector<int> clocks{100, 200, 300, 350};
   std::set<std::string> files;
   for (const std::vector<int>& order : {std::vector{1, 2, 3, 4}, {4, 3, 2, 1}, {3, 1, 4, 2}}) {
@@ -173,7 +187,7 @@ TEST(SweepStore, TheTableDoesNotDependOnTheOrderInWhichPointsWereFinished) {
     for (const int point : order) store.put(point, results[point]);
     publish(store, folder);
     for (const auto& [point, result] : results)
-      EXPECT_EQ(to_text(*store.result_of(point)), to_text(result)) << point;
+      EXPECT_EQ(record_json(*store.result_of(point)), record_json(result)) << point;
     files.insert(base::read_text_file(folder / kSweepCsv));
   }
   EXPECT_EQ(files.size(), 1u);
@@ -228,7 +242,7 @@ TEST(SweepStore, RefusesDamagedLines) {
   const std::string first = text.substr(0, text.find('\n') + 1);
   const std::string point = text.substr(first.size());
   std::string other = point;
-  other.replace(other.find("\"failure\":\"\""), 12, "\"failure\":\"x\"");
+  other.replace(other.find("\"record\":{"), 10, "\"record\":{\"failure\":\"x\",");
   std::string beyond = point;
   beyond.replace(beyond.find(":1,"), 3, ":3,");
   std::string settings = point;

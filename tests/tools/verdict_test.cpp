@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/tools/example_run.h"
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/report/tables.h"
 
 namespace leviosim::tools {
@@ -48,8 +48,8 @@ using Texts = std::vector<std::string>;
 
 Texts map_faults(const RunResult& run) { return map_verdict(figures_of(run).map).reasons; }
 Grade map_grade(const RunResult& run) { return map_verdict(figures_of(run).map).grade; }
-std::string text_of(const RunResult& run) { return verdicts(figures_of(run)).text(); }
-Grade grade_of(const RunResult& run) { return verdicts(figures_of(run)).grade(); }
+std::string text_of(const RunResult& run) { return figures_of(run).verdicts.text(); }
+Grade grade_of(const RunResult& run) { return figures_of(run).verdicts.grade(); }
 
 TEST(MapVerdict, AGoodMapHasNone) {
   EXPECT_EQ(map_faults(testing::example_run()), Texts());
@@ -292,8 +292,8 @@ TEST(Verdicts, AreGreenOnlyIfAllAre) {
             "map lost: the error is 37.8 % of the path, time fits: all 40 frames within 50 ms, "
             "worst 20 ms, memory fits");
   run.l1_size = Bytes(60'000);  // the example needs 64 000
-  EXPECT_EQ(verdicts(figures_of(run)).list[1].word(), "does not fit");
-  EXPECT_EQ(verdicts(figures_of(RunResult())).text(), "no frames");
+  EXPECT_EQ(figures_of(run).verdicts.list[1].word(), "does not fit");
+  EXPECT_EQ(figures_of(RunResult()).verdicts.text(), "no frames");
 }
 
 /// What the program promises of every verdict, over many runs.

@@ -12,6 +12,8 @@
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/record/measured.h"
+#include "tools/app/run/record_source.h"
 
 namespace leviosim::tools {
 namespace {

@@ -14,7 +14,8 @@
 #include "tools/app/budget/check.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/record/record.h"
+#include "tools/app/run/record_source.h"
 
 namespace leviosim::tools {
 namespace {
@@ -61,7 +62,9 @@ void run(const CLI::App& command, const BudgetOptions& options) {
   if (!options.gate.budget.empty()) budget = read_budget(options.gate.budget);
   const RunRecord record = read_record(options.run, options);
   print(Printout(options.action == "init" ? first_budget(record, margin)
-                                          : baseline_text(record, budget ? &*budget : nullptr),
+                                          : record_text(reduced(record, Level::kept,
+                                                                budget ? figures_in(*budget, record)
+                                                                       : std::set<std::string>())),
                  true));
 }
 

@@ -12,9 +12,10 @@
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/run_record.h"
 #include "tools/app/history/history.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/record/measured.h"
+#include "tools/app/run/record_source.h"
 
 namespace leviosim::tools {
 namespace {
@@ -88,8 +89,8 @@ void run(const CLI::App& command, const CheckOptions& options) {
                     .replace = options.force,
                     .inputs = {options.run, options.gate.budget, options.gate.baseline}});
   expect_different(junit, "--junit", comment, "--markdown");
-  RunFiles files;
-  const RunRecord record = read_record(options.run, options, &files);
+  const RunFolder run = read_run(options.run, options, page.has_value());
+  const RunRecord& record = run.record;
   if (page && record.facts.measured)
     throw InputError(
         fmt::format("{}: was measured, so it has no page; leave out --report", options.run));
@@ -99,7 +100,7 @@ void run(const CLI::App& command, const CheckOptions& options) {
   CheckResult result = gate.check(record);
   add_history(result, record, gate.budget(), before);
   std::string html;
-  if (page) html = html_page(runs_report({{record, files}}, {}, &result));
+  if (page) html = html_page(runs_report({run}, {}, &result));
   Printout report = printout(
       options.json, [&] { return text_report(options, result); },
       [&] { return json_text(check_json(result), 2) + '\n'; });

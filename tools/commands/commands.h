@@ -5,43 +5,45 @@
 
 #include "tools/app/cli/command_line.h"
 
-/// All of them, in the order of the help: ADD(name) for each.
+/// All of them, in the order of the help: ADD(group, name) for each. Groups: what computes, what
+/// asks about it, what guards a project's figures, and what the results rest on.
 #define LEVIOSIM_COMMANDS(ADD) \
-  ADD(demo)              \
-  ADD(run)               \
-  ADD(synth)             \
-  ADD(doctor)            \
-  ADD(platforms)         \
-  ADD(workload)          \
-  ADD(eval)              \
-  ADD(image_statistics)  \
-  ADD(trajectory)        \
-  ADD(ablate)            \
-  ADD(explore)           \
-  ADD(benchmark_flights) \
-  ADD(validate)          \
-  ADD(calibrate)         \
-  ADD(sensitivity)       \
-  ADD(microbench)        \
-  ADD(replay)            \
-  ADD(trace)             \
-  ADD(whatif)            \
-  ADD(why)               \
-  ADD(tune)              \
-  ADD(sweep)             \
-  ADD(flow)              \
-  ADD(compare)           \
-  ADD(check)             \
-  ADD(budget)            \
-  ADD(history)           \
-  ADD(bisect)            \
-  ADD(report)
+  ADD(run, demo)               \
+  ADD(run, run)                \
+  ADD(run, replay)             \
+  ADD(run, synth)              \
+  ADD(run, flow)               \
+  ADD(ask, whatif)             \
+  ADD(ask, why)                \
+  ADD(ask, tune)               \
+  ADD(ask, sweep)              \
+  ADD(ask, sensitivity)        \
+  ADD(ask, explore)            \
+  ADD(ask, ablate)             \
+  ADD(ask, benchmark_flights)  \
+  ADD(guard, compare)          \
+  ADD(guard, check)            \
+  ADD(guard, budget)           \
+  ADD(guard, history)          \
+  ADD(guard, bisect)           \
+  ADD(guard, report)           \
+  ADD(trust, validate)         \
+  ADD(trust, calibrate)        \
+  ADD(trust, microbench)       \
+  ADD(trust, platforms)        \
+  ADD(trust, workload)         \
+  ADD(trust, eval)             \
+  ADD(trust, trajectory)       \
+  ADD(trust, trace)            \
+  ADD(trust, image_statistics) \
+  ADD(trust, doctor)
 
 namespace leviosim::tools {
 
 /// Adds a command with its options to the program.
 /// @param words  the whole command line, for manifests; must outlive the command
-#define LEVIOSIM_DECLARE(name) Command add_##name##_command(CLI::App& app, const Words& words);
+#define LEVIOSIM_DECLARE(group, name) \
+  Command add_##name##_command(CLI::App& app, const Words& words);
 LEVIOSIM_COMMANDS(LEVIOSIM_DECLARE)
 #undef LEVIOSIM_DECLARE
 

@@ -9,8 +9,9 @@
 #include "sim/base/error.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/record/measured.h"
+#include "tools/app/run/record_source.h"
 #include "tools/app/study/sweep/points.h"
 
 namespace leviosim::tools {
@@ -35,21 +36,20 @@ std::string on_chip(const CompareOptions& options) {
   return text;
 }
 
-ReportedRun reported(const std::string& run, const CompareOptions& options) {
-  ReportedRun result;
+RunFolder named_run(const std::string& run, const CompareOptions& options) {
   const std::optional<PointName> point = point_name(run);
   if (point && options.names_chip())
     throw InputError(fmt::format(
         "{}: a point of a sweep has its chip; leave out --platform, -p and --cores", run));
-  result.record =
-      point ? read_point(*point, options, &result.files) : read_record(run, options, &result.files);
+  RunFolder result =
+      point ? read_point(*point, options) : read_run(run, options, !options.report.empty());
   if (options.names_chip() && options.runs.size() > 1) result.record.name += on_chip(options);
   return result;
 }
 
 /// All runs that are compared with the first. One run with a chip is compared with itself there.
-std::vector<ReportedRun> records(const CompareOptions& options) {
-  std::vector<ReportedRun> list;
+std::vector<RunFolder> records(const CompareOptions& options) {
+  std::vector<RunFolder> list;
   if (options.runs.size() == 1) {
     if (!options.names_chip())
       throw InputError(fmt::format(
@@ -62,31 +62,27 @@ std::vector<ReportedRun> records(const CompareOptions& options) {
     as_recorded.cores.clear();
     const std::string trace = trace_of(options.runs.front());
     if (trace.empty()) {
-      list.push_back(reported(options.runs.front(), options));
+      list.push_back(named_run(options.runs.front(), options));
     } else {
-      ReportedRun recorded;
-      recorded.record = replay_record(trace, as_recorded, &recorded.files);
-      list.push_back(std::move(recorded));
+      list.push_back(replayed_run(trace, as_recorded));
     }
   }
-  for (const std::string& run : options.runs) list.push_back(reported(run, options));
+  for (const std::string& run : options.runs) list.push_back(named_run(run, options));
   return list;
 }
 
 /// Two builds on the same input: their runs, by the names of the builds.
 /// @param note  gets what of the difference is work, cost and chip
-std::vector<ReportedRun> runs_of_programs(const CompareOptions& options, std::string& note) {
+std::vector<RunFolder> runs_of_programs(const CompareOptions& options, std::string& note) {
   if (options.names_chip())
     throw InputError(
         "compare: with --programs the chip stands behind --, as the other arguments of leviosim "
         "run");
   const TwoPrograms programs(options.programs, options.runs);
-  std::vector<ReportedRun> list;
+  std::vector<RunFolder> list;
   for (std::size_t i = 0; i < programs.folders().size(); ++i) {
-    ReportedRun& run = list.emplace_back();
-    run.files = read_run_files(programs.folders()[i]);
-    run.record = record_of_files(programs.folders()[i], run.files);
-    run.record.name = options.programs[i];
+    list.push_back(read_run_folder(programs.folders()[i], !options.report.empty()));
+    list.back().record.name = options.programs[i];
   }
   note = programs.split();
   return list;
@@ -108,15 +104,15 @@ void run(const CLI::App& command, const CompareOptions& options) {
   std::optional<outputs::OutputFile> page =
       claimed_report(options.report, options.force, {options.runs.begin(), options.runs.end()});
   std::string note;
-  std::vector<ReportedRun> runs =
+  std::vector<RunFolder> runs =
       options.programs.empty() ? records(options) : runs_of_programs(options, note);
-  for (const ReportedRun& run : runs)
+  for (const RunFolder& run : runs)
     if (page && run.record.facts.measured)
       throw InputError(
           fmt::format("{}: was measured, so it has no page; leave out --report", run.record.name));
-  for (const ReportedRun& run : runs)
+  for (const RunFolder& run : runs)
     if (!run.record.facts.measured)
-      for (ReportedRun& other : runs) name_stages_like(other.record, run.record);
+      for (RunFolder& other : runs) name_stages_like(other.record, run.record);
   std::vector<RunComparison> comparisons;
   for (std::size_t i = 1; i < runs.size(); ++i)
     comparisons.push_back(

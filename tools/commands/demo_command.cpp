@@ -27,7 +27,7 @@ constexpr const char* kReport = "report.html";
 /// One profile on the flight.
 struct Flown {
   RunResult result;
-  ReportedRun reported;
+  RunFolder folder;
   std::string trace;  ///< its work, where it was recorded
 };
 
@@ -41,10 +41,8 @@ Flown fly(RunOptions options, const char* profile, bool record, const Words& wor
   if (record) request.recording = &recording;
   Flown flown{simulate_with_progress(request, style), {}, {}};
   const Manifest manifest = make_manifest(options, request, words);
-  flown.reported.files = run_files(flown.result, manifest, platform::to_yaml(request.platform));
-  flown.reported.files[kCyclesFile] = cycles_csv(cycle_parts(flown.result));
-  flown.reported.record =
-      make_record(options.out + '/' + profile, manifest, flown.result, cycle_parts(flown.result));
+  flown.folder = run_folder(options.out + '/' + profile, flown.result, manifest,
+                            platform::to_yaml(request.platform));
   if (record) flown.trace = work_trace_of(std::move(recording), options, request, manifest);
   return flown;
 }
@@ -206,14 +204,14 @@ void run(RunOptions options, const Words& words) {
   const std::string text = screen(levio, next, what_ifs(levio.trace, style), options, options.out);
   const Allowed allowed = parse_allowed("profile");
   const std::string page = html_page(runs_report(
-      {levio.reported, next.reported},
-      {compare_runs(levio.reported.record, next.reported.record,
-                    check_comparable(levio.reported.record, next.reported.record, allowed))},
+      {levio.folder, next.folder},
+      {compare_runs(levio.folder.record, next.folder.record,
+                    check_comparable(levio.folder.record, next.folder.record, allowed))},
       nullptr));
   publish(out, Printout(text), [&] {
-    write_run_files(out, levio.reported.files, "levio/");
+    write_run_folder(out, levio.folder, "levio/");
     out.write(std::string("levio/") + kWorkTraceFile, levio.trace);
-    write_run_files(out, next.reported.files, "next/");
+    write_run_folder(out, next.folder, "next/");
     out.write(kReport, page);
   });
 }

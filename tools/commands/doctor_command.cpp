@@ -25,7 +25,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "traces/recordings/recording.h"
 
 namespace leviosim::tools {

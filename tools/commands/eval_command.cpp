@@ -19,6 +19,7 @@
 #include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/report/run_summary.h"
 #include "tools/app/table/terminal_table.h"
 #include "traces/trajectories/evaluation.h"
@@ -212,7 +213,7 @@ Json figures(const traces::TrajectoryPair& pair, const EvalRequest& request,
            rounded(accuracy.evaluation.alignment.scale));
   for (const RelativeErrors& errors : accuracy.relative)
     add_relative(list, accuracy.evaluation, errors);
-  return statistics_document(list.json(), {{"estimate", file_json(pair.estimate)},
+  return statistics_document(list.rows(), {{"estimate", file_json(pair.estimate)},
                                            {"ground_truth", file_json(pair.truth)},
                                            {"protocol", protocol_json(request)}});
 }
@@ -289,8 +290,7 @@ std::string after(const EvalOptions& options) {
 
 /// One estimate: its figures. Several: a list of such documents.
 std::string json_of(const std::vector<Evaluated>& all, const EvalRequest& request) {
-  if (all.size() == 1)
-    return statistics_document_text(figures(all[0].pair, request, all[0].accuracy));
+  if (all.size() == 1) return json_lines(figures(all[0].pair, request, all[0].accuracy)) + '\n';
   Json document{{"format", "leviosim evaluations"}, {"version", 1}};
   document["evaluations"] = Json::array();
   for (const Evaluated& one : all)

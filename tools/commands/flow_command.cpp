@@ -7,7 +7,7 @@
 
 #include "tools/app/cli/outputs.h"
 #include "tools/app/flow/flow.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 

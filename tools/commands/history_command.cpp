@@ -15,6 +15,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/history/history.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/run/record_source.h"
 
 namespace leviosim::tools {
 namespace {
@@ -94,7 +95,7 @@ void add(const CLI::App& command, const HistoryOptions& options) {
   bool is_new = false;
   add_to_history(options.file, [&](const History& history) {
     if (gate) run.limits = limits_of(run, *gate, history);
-    const std::string lines = history.lines_for(run);
+    const std::string lines = history.line_for(run);
     runs = history.size();
     is_new = !lines.empty();
     return lines;

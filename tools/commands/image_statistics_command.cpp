@@ -13,7 +13,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/terminal.h"
 #include "tools/app/images/image_statistics.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "traces/recordings/recording.h"
 

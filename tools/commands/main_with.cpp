@@ -124,6 +124,15 @@ Words without_jobs(const Words& typed) {
   return words;
 }
 
+/// Under its title in the help.
+Command grouped(Command command, std::string_view group) {
+  command.app->group(group == "run"     ? "Run the workload"
+                     : group == "ask"   ? "Ask what if, and what would help"
+                     : group == "guard" ? "Guard the figures of a project"
+                                        : "Trust: what the results rest on");
+  return command;
+}
+
 int run_program(const Words& typed) {
   const Words words = without_jobs(typed);
   CLI::App app("Runs visual-inertial odometry on models of ultra-low-power multicore chips.",
@@ -132,7 +141,7 @@ int run_program(const Words& typed) {
   app.set_version_flag("--version", fmt::format("leviosim {}", version()));
   std::vector<Command> commands;
   try {
-#define LEVIOSIM_ADD(name) add_##name##_command(app, words),
+#define LEVIOSIM_ADD(group, name) grouped(add_##name##_command(app, words), #group),
     commands = {LEVIOSIM_COMMANDS(LEVIOSIM_ADD)};
 #undef LEVIOSIM_ADD
     const int status = run_command_line(app, commands, typed);

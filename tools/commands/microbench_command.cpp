@@ -11,7 +11,7 @@
 #include "platform_models/loader/schema.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/validation/microbench/bench.h"
 
 namespace leviosim::tools {

@@ -19,7 +19,7 @@
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload.h"

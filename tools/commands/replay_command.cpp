@@ -11,8 +11,8 @@
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/record/record.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
@@ -68,15 +68,13 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
   if (options.platform.empty()) options.platform = trace.info().platform;
   const Manifest manifest = replay_manifest(trace, digest_of_file(trace.name()), options, words);
   options.data = trace.info().data;
-  RunFiles files = run_files(result.run, manifest, platform::to_yaml(request.platform));
-  files[kReplayFile] = replay_csv(result);
-  files[kCyclesFile] = cycles_csv(cycle_parts(result.run));
-  publish(out, run_printout(options, result.run, replay_report(result, trace)),
-          [&] { write_run_files(out, files); });
+  RunFolder folder =
+      run_folder(out.shown_path(), result.run, manifest, platform::to_yaml(request.platform));
+  folder.others[kReplayFile] = replay_csv(result);
+  publish(out, run_printout(options, result.run, folder.record, replay_report(result, trace)),
+          [&] { write_run_folder(out, folder); });
   if (timeline) timeline->publish(result.run, !options.json);
-  report_and_check(
-      {make_record(out.shown_path(), manifest, result.run, cycle_parts(result.run)), files}, page,
-      gate, !options.json);
+  report_and_check(folder, page, gate, !options.json);
 }
 
 }  // namespace

@@ -27,11 +27,8 @@ void run(const CLI::App& command, const ReportOptions& options) {
   const Allowed allowed = parse_allowed(options.allow);
   std::optional<outputs::OutputFile> page = claimed_report(
       options.out, options.force, {options.runs.begin(), options.runs.end()}, "--out");
-  std::vector<ReportedRun> runs;
-  for (const std::string& name : options.runs) {
-    RunFiles files = read_run_files(name);
-    runs.push_back({record_of_files(name, files), std::move(files)});
-  }
+  std::vector<RunFolder> runs;
+  for (const std::string& name : options.runs) runs.push_back(read_run_folder(name, true));
   std::vector<RunComparison> comparisons;
   for (std::size_t i = 1; i < runs.size(); ++i)
     comparisons.push_back(
@@ -40,7 +37,7 @@ void run(const CLI::App& command, const ReportOptions& options) {
   const RunRecord& first = runs.front().record;
   publish_report(page, runs_report(runs, comparisons, nullptr));
   print(Printout(std::string())
-            .ending("verdict: " + verdicts(first).text(),
+            .ending("verdict: " + first.verdicts.text(),
                     {runs.size() > 1 ? fmt::format("leviosim compare {} {}", shell_word(first.name),
                                                    shell_word(runs[1].record.name))
                                      : fmt::format("leviosim whatif {}", shell_word(first.name))}));

@@ -7,8 +7,8 @@
 
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/record/record.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/trace_source.h"
@@ -41,17 +41,16 @@ void run(const CLI::App& command, RunCommandOptions options, const Words& words)
   if (timeline) request.observer = &timeline->observer();
   const RunResult result = simulate_with_progress(request, style);
   const Manifest manifest = make_manifest(options, request, words);
-  RunFiles files = run_files(result, manifest,
-                             request.native ? std::string() : platform::to_yaml(request.platform));
-  if (!request.native) files[kCyclesFile] = cycles_csv(cycle_parts(result));
-  publish(out, run_printout(options, result), [&] {
-    write_run_files(out, files);
+  const RunFolder folder =
+      run_folder(out.shown_path(), result, manifest,
+                 request.native ? std::string() : platform::to_yaml(request.platform));
+  publish(out, run_printout(options, result, folder.record), [&] {
+    write_run_folder(out, folder);
     if (!options.record) return;
     out.write(kWorkTraceFile, work_trace_of(std::move(recording), options, request, manifest));
   });
   if (timeline) timeline->publish(result, !options.json);
-  report_and_check({make_record(out.shown_path(), manifest, result, cycle_parts(result)), files},
-                   page, gate, !options.json);
+  report_and_check(folder, page, gate, !options.json);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "sim/base/error.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/trace_source.h"
 

@@ -22,7 +22,7 @@ constexpr const char* kNotExamined = "not examined yet";
 /// The folder of the run, with what was found out about it.
 void write_folder(outputs::OutputFolder& out, const Validation& validation, const RunResult& run,
                   const Manifest& manifest, const std::string& platform) {
-  write_run_folder(out, run, manifest, platform);
+  write_run_folder(out, run_folder(out.shown_path(), run, manifest, platform));
   out.write("validation.csv", validation_csv(validation));
   out.write("validation.json", json_text(validation_json(validation), 2) + '\n');
   std::vector<std::optional<double>> values;

@@ -8,7 +8,7 @@
 
 #include "sim/base/csv.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/run/workload.h"
 #include "tools/app/table/table_files.h"
 #include "tools/app/table/terminal_table.h"

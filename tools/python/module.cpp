@@ -13,7 +13,8 @@
 #include "sim/base/sha256.h"
 #include "sim/energy/area.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/record/record.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/report/run_summary.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/run_folder.h"
@@ -41,7 +42,7 @@ ProgressCallback watched(const py::object& callback) {
 }
 
 /// Files by name; those that are no text as bytes.
-py::dict as_dict(const RunFiles& files) {
+py::dict as_dict(const std::map<std::string, std::string>& files) {
   py::dict all;
   for (const auto& [name, text] : files)
     if (name == kWorkTraceFile)
@@ -92,17 +93,16 @@ RunOptions run_options(const py::dict& words) {
   return options;
 }
 
-RunFiles files_of(const RunResult& result, const Manifest& manifest, const RunRequest& request) {
-  RunFiles files = run_files(result, manifest,
-                             request.native ? std::string() : platform::to_yaml(request.platform));
-  if (!request.native) files[kCyclesFile] = cycles_csv(cycle_parts(result));
-  return files;
+std::map<std::string, std::string> files_of_run(const RunResult& result, const Manifest& manifest,
+                                                const RunRequest& request) {
+  return files_of(run_folder("", result, manifest,
+                             request.native ? std::string() : platform::to_yaml(request.platform)));
 }
 
 py::dict run(const py::dict& words, const py::object& progress) {
   RunOptions options = run_options(words);
   set_run_defaults(options);
-  RunFiles files;
+  std::map<std::string, std::string> files;
   {
     const ProgressCallback watch = watched(progress);
     const py::gil_scoped_release unlocked;
@@ -116,7 +116,7 @@ py::dict run(const py::dict& words, const py::object& progress) {
     if (options.record) request.recording = &recording;
     const RunResult result = simulate(request, watch);
     const Manifest manifest = make_manifest(options, request, {"python"});
-    files = files_of(result, manifest, request);
+    files = files_of_run(result, manifest, request);
     if (options.record)
       files[kWorkTraceFile] = work_trace_of(std::move(recording), options, request, manifest);
   }
@@ -129,7 +129,7 @@ py::dict replay_bytes(const std::string& name, const py::bytes& bytes, const std
   RunOptions options;
   options.platform = platform;
   options.overrides = set;
-  RunFiles files;
+  std::map<std::string, std::string> files;
   std::string content = bytes;
   {
     const ProgressCallback watch = watched(progress);
@@ -141,7 +141,7 @@ py::dict replay_bytes(const std::string& name, const py::bytes& bytes, const std
     request.time_bands = TimeBandsOf::team;
     const Replay result = replay(trace, request, watch);
     if (options.platform.empty()) options.platform = trace.info().platform;
-    files = files_of(result.run, replay_manifest(trace, digest, options, {"python"}), request);
+    files = files_of_run(result.run, replay_manifest(trace, digest, options, {"python"}), request);
     files[kReplayFile] = replay_csv(result);
   }
   return as_dict(files);
@@ -175,7 +175,7 @@ std::string evaluate_files(const std::string& estimate, const std::string& truth
   add_ate(list, evaluation, traces::attitude_errors(evaluation));
   for (const double length : lengths_m)
     add_relative(list, evaluation, traces::relative_errors(evaluation, length));
-  return json_text(list.json());
+  return json_text(statistics_json(list.rows()));
 }
 
 py::list parameters_of(const platform::ResolvedPlatform& chip) {

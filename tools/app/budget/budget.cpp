@@ -17,7 +17,7 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/text.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
 #include "tools/app/run/yaml_map.h"
@@ -358,7 +358,7 @@ std::string first_budget(const RunRecord& run, double margin) {
     if (const auto value = run.value(limit.statistic))
       text += fmt::format("      - {} <= {} {}\n", limit.figure,
                           rounded_up(*value * limit.scale * factor, limit.decimals), limit.unit);
-  for (const RunVerdict& verdict : verdicts(run).list)  // a budget that says nothing refuses these
+  for (const RunVerdict& verdict : run.verdicts.list)  // a budget that says nothing refuses these
     if (verdict.grade == Grade::bad)
       text += fmt::format("      - {} verdict <= {}\n", verdict.about, verdict.word());
   for (const StageName& stage : run.stages)

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "platform_models/loader/value.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/record/record.h"
 
 namespace leviosim::tools {
 

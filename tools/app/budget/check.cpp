@@ -9,6 +9,7 @@
 #include "sim/base/error.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison.h"
+#include "tools/app/record/measured.h"
 #include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
@@ -88,7 +89,7 @@ void add_bad_verdicts(CheckResult& result, const RunRecord& run, const Budget& b
     if (figure.statistic->value != severity(Grade::bad)) continue;
     Finding finding = hold(limit, figure, nullptr);
     finding.section = &budget.verdicts;
-    for (const RunVerdict& verdict : verdicts(run).list)
+    for (const RunVerdict& verdict : run.verdicts.list)
       if (figure.statistic->name == fmt::format("verdict.{}", verdict.about))
         finding.why = verdict.reasons;
     result.findings.push_back(std::move(finding));

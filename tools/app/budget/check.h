@@ -8,8 +8,8 @@
 
 #include "tools/app/budget/budget.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/run_record.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/record.h"
+#include "tools/app/record/statistic_list.h"
 
 namespace leviosim::tools {
 

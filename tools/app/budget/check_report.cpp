@@ -11,7 +11,7 @@
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/result/verdict.h"
 #include "tools/app/table/terminal_table.h"
 
@@ -242,7 +242,7 @@ std::string markdown_comment(const CheckResult& result, const RunRecord& run,
                       ? result.warned() == 0 ? "all limits are met" : "met, with warnings"
                       : fmt::format("{} of {} limits {} not met", result.missed(),
                                     result.findings.size(), result.missed() == 1 ? "is" : "are"));
-  for (const RunVerdict& verdict : verdicts(run).list)
+  for (const RunVerdict& verdict : run.verdicts.list)
     text +=
         fmt::format("- **{}**: {}{}\n", verdict.about, markdown_text(std::string(verdict.word())),
                     verdict.reason().empty() ? "" : ": " + markdown_text(verdict.reason()));

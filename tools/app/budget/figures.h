@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/app/budget/budget.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/record/record.h"
 
 namespace leviosim::tools {
 

@@ -1,17 +1,17 @@
-// A baseline: what a budget needs of an earlier run, in a few kilobytes of JSON with a figure on a
-// line, made for version control. It holds the facts of the run, the figures that most limits are
-// about, those that a budget names, the blocks at the highest peak of L1, and the larger parts of
-// every stage's cycles; parts below one per cent of a stage are one.
+// A budget as a command holds a run against it: read before work is done, judged at the end. The
+// baseline is a run, or the record of one with less in it (record.h, Level::kept).
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/check.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/record/record.h"
+#include "tools/app/run/record_source.h"
 
 namespace CLI {
 class App;
@@ -19,28 +19,8 @@ class App;
 
 namespace leviosim::tools {
 
-/// A figure that is not a stage's, and its value: whole numbers without a fraction, or null.
-struct BaselineFigure {
-  std::string name;
-  std::string unit;
-  Json value;
-};
-/// What a baseline without a budget holds, in two parts: figures of the run, and stages with theirs
-/// and the larger parts of their cycles, if they have any. @throws InputError if it is not known
-/// where cycles went
-std::vector<BaselineFigure> baseline_figures(const RunRecord& run);
-std::vector<Json> baseline_stages(const RunRecord& run);
-/// The inverse of the second: adds the stage, its figures and its cycles.
-/// @throws nlohmann::json::exception, InputError for what is no such stage
-void add_baseline_stage(const Json& stage, RunRecord& run);
-
-/// The text of a baseline. @param budget  whose further statistics it holds too; may be null
-std::string baseline_text(const RunRecord& run, const Budget* budget);
-
-/// @throws InputError for what is no baseline
-RunRecord parse_baseline(const std::string& name, const std::string& text);
-
-// A budget as a command holds a run against it: read before work is done, judged at the end.
+/// Names of the statistics that the limits for a run are about, to be kept in a baseline.
+std::set<std::string> figures_in(const Budget& budget, const RunRecord& run);
 
 struct GateOptions {
   std::string budget;
@@ -49,7 +29,7 @@ struct GateOptions {
 };
 
 /// What a command reads as a run: also a baseline, a file of `budget record`.
-/// @throws InputError as read_record() and parse_baseline()
+/// @throws InputError as read_record() and parse_record()
 RunRecord read_run_or_baseline(const std::string& name, const RecordOptions& chip);
 
 /// Declares --budget, --baseline and --allow.

@@ -12,7 +12,7 @@
 #include "sim/base/error.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/host.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/record/record.h"
 #include "tools/app/run/run_folder.h"
 
 namespace leviosim::tools {
@@ -195,13 +195,13 @@ std::optional<double> TwoPrograms::cycles_of_replay(const std::string& platform)
                  "--quiet", "--force", "--out", out},
                 true) != 0)
     return std::nullopt;
-  return read_run_folder(out).value(kFrameCycles);
+  return read_run_folder(out, false).record.value(kFrameCycles);
 }
 
 std::string TwoPrograms::split() const {
   if (!std::filesystem::exists(folders_[0] + '/' + kWorkTraceFile)) return {};
-  const auto a = read_run_folder(folders_[0]).value(kFrameCycles);
-  const auto b = read_run_folder(folders_[1]).value(kFrameCycles);
+  const auto a = read_run_folder(folders_[0], false).record.value(kFrameCycles);
+  const auto b = read_run_folder(folders_[1], false).record.value(kFrameCycles);
   const auto timed = cycles_of_replay(folders_[0] + "/platform.yaml");
   const auto on_new_chip = cycles_of_replay(folders_[1] + "/platform.yaml");
   if (!a || !b || !timed || !on_new_chip || *a == 0) return {};

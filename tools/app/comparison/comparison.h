@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/record/record.h"
 
 namespace leviosim::tools {
 
@@ -104,8 +104,8 @@ struct StageComparison {
   /// What became of work that an accelerator serves in one of the runs only: "offloaded to
   /// hamming".
   std::vector<std::string> offloaded = {};
-  /// Cycles of a mean frame. Parts: mechanisms, and in them kinds of operation; absent if one of
-  /// the runs has no cycles.csv.
+  /// Cycles of a mean frame. Parts: mechanisms, and in them kinds of operation; absent if of
+  /// one of the runs it is not known where its cycles went.
   std::optional<ComparedQuantity> mechanisms;
   /// The same by fork, with mechanisms as parts.
   std::optional<ComparedQuantity> forks;
@@ -203,40 +203,5 @@ Json comparison_json(const RunComparison& comparison);
 /// subject,quantity,part,subpart,unit,a,b,difference; a row per quantity. Cells that hold commas or
 /// quotes are quoted (RFC 4180).
 std::string comparison_csv(const RunComparison& comparison);
-
-// Why a mean frame of the cluster takes another time on another chip: the difference by mechanism,
-// in words, in milliseconds. All causes together are the whole difference.
-//
-// Work that is divided among other numbers of cores, work that went to an accelerator, and another
-// clock are causes of their own: none of them makes an operation cheaper.
-
-/// Where the cycles of a run went, and what a cycle is.
-struct TimedParts {
-  std::vector<StageParts> stages;
-  int cores = 0;
-  double frames = 0;
-  Hertz clock;
-};
-
-struct MainCause {
-  std::string what;   ///< "waiting for code"
-  double ms = 0;      ///< of a mean frame; below 0: saved
-  std::string stage;  ///< that has most of it
-  double stage_ms = 0;
-};
-
-TimedParts timed_parts(const RunRecord& run);
-
-/// The largest first.
-std::vector<MainCause> main_causes(const TimedParts& a, const TimedParts& b);
-
-/// "waiting for code -11.20 ms, most in EPnP RANSAC".
-std::string cause_text(const MainCause& cause);
-
-/// Accelerators of the chip that served nothing: "hamming (cluster)".
-std::vector<std::string> unused_accelerators(const RunFigures& run);
-/// "nothing of this run uses hamming (cluster), because …"; empty if B has no unused ones that A
-/// has not.
-std::string unused_text(const std::vector<std::string>& in_a, const std::vector<std::string>& in_b);
 
 }  // namespace leviosim::tools

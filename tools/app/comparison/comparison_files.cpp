@@ -8,7 +8,8 @@
 #include "sim/base/csv.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/terminal.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/comparison/main_causes.h"
+#include "tools/app/record/record.h"
 #include "tools/app/result/verdict.h"
 #include "tools/app/table/table_files.h"
 #include "tools/app/table/terminal_table.h"
@@ -107,7 +108,7 @@ std::string described(std::string_view letter, const RunRecord& run, const RunRe
 
 std::string verdicts_in_words(const RunRecord& run) {
   std::string words;
-  for (const RunVerdict& verdict : verdicts(run).list)
+  for (const RunVerdict& verdict : run.verdicts.list)
     words += fmt::format("{}{} {}", words.empty() ? "" : ", ", verdict.about, verdict.word());
   return words;
 }
@@ -155,8 +156,7 @@ std::string stages_of_summary(const RunComparison& c) {
 
 std::vector<std::string> cause_lines(const RunComparison& c) {
   if (c.a.cycles.empty() || c.b.cycles.empty())
-    return {screen_line(
-        "one of the runs has no cycles.csv, so causes are not known; replay its trace")};
+    return {screen_line("where the cycles of one of the runs went is not known; replay its trace")};
   std::vector<std::string> lines;
   const std::vector<MainCause> causes = main_causes(timed_parts(c.a), timed_parts(c.b));
   double most = 0;

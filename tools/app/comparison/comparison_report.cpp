@@ -8,6 +8,7 @@
 
 #include "sim/base/error.h"
 #include "sim/base/text.h"
+#include "tools/app/record/measured.h"
 #include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
@@ -157,7 +158,7 @@ class Writer {
                                    [](const StageComparison& s) { return s.mechanisms; });
     if (!known) {
       title("why");
-      line("one of the runs has no cycles.csv, so its mechanisms are not known; replay its trace");
+      line("where the cycles of one of the runs went is not known; replay its trace");
       return;
     }
     title("why: kcycles of a mean frame on N cores");

@@ -7,60 +7,34 @@
 #include <chrono>
 #include <functional>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/sha256.h"
 #include "sim/outputs/growing_file.h"
-#include "tools/app/budget/gate.h"
-#include "tools/app/report/json_reader.h"
+#include "tools/app/record/json_reader.h"
 
 namespace leviosim::tools {
 namespace {
 
-constexpr std::string_view kKept = "{\"kept\":\"";
 constexpr std::string_view kRun = "{\"run\":\"";
 constexpr std::string_view kTime = "\",\"time\":";
+constexpr std::string_view kLike = ",\"like\":\"";
+constexpr std::string_view kFacts = ",\"facts\":";
+constexpr std::string_view kStatistics = ",\"statistics\":";
+constexpr std::string_view kStages = ",\"stages\":";
+constexpr std::string_view kOldLine = "{\"kept\":\"";
 constexpr std::size_t kDigits = 12;  ///< of a digest
-/// A run of fifty stages takes a few kB.
-constexpr JsonLimits kLineLimits{
-    .bytes = std::size_t{1} << 20, .depth = 16, .values = 50'000, .members = 256};
-constexpr std::size_t kMostStagesOfLine = 1000;
+/// A run of fifty stages takes some 20 kB.
+constexpr JsonLimits kLineLimits{.bytes = std::size_t{1} << 20, .depth = 16, .values = 50'000};
 
-/// A shared line: what it holds, under its digest.
-struct Shared {
-  std::string digest;
-  std::string line;
-};
-
-Shared shared(const char* what, const Json& value) {
-  const std::string text = json_text(value);
-  Shared result{base::sha256_of(what + text).substr(0, kDigits), {}};
-  result.line =
-      fmt::format("{}{}\",\"what\":\"{}\",\"value\":{}}}\n", kKept, result.digest, what, text);
-  return result;
-}
-
-/// Nothing of a fact says which commit it is of.
-Json facts_of(RunFacts facts) {
+/// Of what runs that can be compared have in common.
+std::string like_digest(RunFacts facts) {
   facts.program.clear();
-  return facts_json(facts);
-}
-
-Json names_of(const std::vector<BaselineFigure>& figures) {
-  Json names = Json::array();
-  for (const BaselineFigure& figure : figures) names.push_back({figure.name, figure.unit});
-  return names;
-}
-
-bool are_alike(const RunFacts& a, const RunFacts& b) {
-  const auto key = [](const RunFacts& f) {
-    return std::tie(f.measured, f.profile, f.platform, f.cores, f.camera, f.seed, f.image_width,
-                    f.image_height, f.first_frame, f.frames, f.inputs);
-  };
-  return key(a) == key(b);
+  facts.workload.clear();
+  facts.overrides.clear();
+  return base::sha256_of(json_text(facts_json(facts))).substr(0, kDigits);
 }
 
 std::string string_of(const Json& json) { return json.get<std::string>(); }
@@ -76,19 +50,16 @@ Origin origin_of(const Json& run) {
 
 /// Whether it is what an interrupted program leaves at the end of a file.
 bool is_unfinished(std::string_view last) {
-  const auto begins = [&](std::string_view mark) {
-    return last.starts_with(mark.substr(0, last.size()));
-  };
-  return (begins(kKept) || begins(kRun)) && !try_read_json(last, kLineLimits);
+  return last.starts_with(kRun.substr(0, last.size())) && !try_read_json(last, kLineLimits);
 }
 
-/// The digest that a line of a run has of what it shares; empty if it has none. No string holds
-/// what is looked for: quotes in it have a backslash before them.
-std::string_view digest_in(std::string_view line, std::string_view what) {
-  const std::string begin = fmt::format(",\"{}\":\"", what);
+/// What stands between two parts of a line; empty if they are not there. No string holds what is
+/// looked for: quotes in it have a backslash before them.
+std::string_view between(std::string_view line, std::string_view begin, std::string_view end) {
   const std::size_t at = line.find(begin);
-  return at == std::string_view::npos ? std::string_view()
-                                      : line.substr(at + begin.size(), kDigits);
+  if (at == std::string_view::npos) return {};
+  const std::string_view rest = line.substr(at + begin.size());
+  return rest.substr(0, std::min(rest.find(end), rest.size()));
 }
 
 }  // namespace
@@ -121,14 +92,15 @@ History::History(std::string file, base::Pieces text)
 }
 
 void History::add_line(std::string_view text, Line line, std::size_t number) {
-  if (text.starts_with(kKept)) {
-    kept_.emplace(text.substr(kKept.size(), kDigits), line);
-    return;
-  }
+  if (text.starts_with(kOldLine))
+    throw InputError(
+        fmt::format("{}: is a history of an earlier leviosim; add the runs to a new one: leviosim "
+                    "history add RUN --file FILE",
+                    file_));
   const std::size_t time = text.find(kTime);
   const std::string_view seconds =
       time == std::string_view::npos ? std::string_view() : text.substr(time + kTime.size());
-  if (!text.starts_with(kRun) || text.back() != '}' ||
+  if (!text.starts_with(kRun) || text.back() != '}' || between(text, kLike, "\"").empty() ||
       std::from_chars(seconds.data(), seconds.data() + seconds.size(), line.time_s).ec !=
           std::errc())
     throw InputError(fmt::format(
@@ -151,105 +123,59 @@ Json History::parsed(const Line& line) const {
   return read_json(file_, text_of(line), kLineLimits);
 }
 
-const Json& History::kept(const std::string& digest) const {
-  const auto known = parsed_.find(digest);
-  if (known != parsed_.end()) return known->second;
-  const auto line = kept_.find(digest);
-  if (line == kept_.end())
-    throw InputError(
-        fmt::format("{}: lacks the line {}{}\"…, which runs need; expected all lines "
-                    "of the histories that it was merged from",
-                    file_, kKept, digest));
-  return parsed_.emplace(digest, parsed(line->second).at("value")).first->second;
-}
-
 Origin History::origin(std::size_t i) const { return origin_of(parsed(runs_[i])); }
 
 PastRun History::run(std::size_t i) const {
+  const Json line = parsed(runs_[i]);
+  PastRun past;
   try {
-    const Json run = parsed(runs_[i]);
-    PastRun past;
-    past.origin = origin_of(run);
-    run.at("limits").get_to(past.limits.held);
-    run.at("missed").get_to(past.limits.missed);
-    past.record.name = short_commit(past.origin.commit);
-    past.record.facts = facts_of_json(file_, kept(string_of(run.at("facts"))));
-    past.record.facts.program = string_of(run.at("program"));
-    const Json& names = kept(string_of(run.at("figures")));
-    const Json& values = run.at("values");
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      Statistic& statistic = past.record.statistics.emplace_back();
-      statistic.name = string_of(names.at(k).at(0));
-      statistic.unit = string_of(names.at(k).at(1));
-      if (!values.at(k).is_null()) statistic.value = values.at(k).get<double>();
-    }
-    if (run.at("stages").size() > kMostStagesOfLine)
-      throw InputError(fmt::format("{}: a run of it has {} stages; expected at most {}", file_,
-                                   run.at("stages").size(), kMostStagesOfLine));
-    for (const Json& stage : run.at("stages"))
-      add_baseline_stage(kept(string_of(stage)), past.record);
-    return past;
-  } catch (const nlohmann::json::exception&) {
-    throw InputError(
-        fmt::format("{}: a run of it is damaged; expected what 'leviosim history add' "
-                    "writes",
-                    file_));
+    past.origin = origin_of(line);
+    line.at("limits").at("held").get_to(past.limits.held);
+    line.at("limits").at("missed").get_to(past.limits.missed);
+    past.record = record_of_json(file_, line.at("record"), Level::kept);
+  } catch (const Json::exception&) {
+    throw InputError(fmt::format(
+        "{}: a run of it is damaged; expected what 'leviosim history add' writes", file_));
   }
+  past.record.name = short_commit(past.origin.commit);
+  return past;
 }
 
 std::vector<PastRun> History::like(const RunRecord& run, const std::string& branch,
                                    std::size_t most) const {
   std::vector<PastRun> found;
-  std::unordered_map<std::string, bool> alike;  // by the digest of the facts
+  const std::string digest = like_digest(run.facts);
   for (std::size_t i = size(); i > 0 && found.size() < most; --i) {
-    std::string digest(digest_in(text_of(runs_[i - 1]), "facts"));
-    const auto known = alike.find(digest);
-    if (known != alike.end() && !known->second) continue;  // without parsing the line
+    if (between(text_of(runs_[i - 1]), kLike, "\"") != digest) continue;
     PastRun past = this->run(i - 1);
-    const bool is_alike = are_alike(past.record.facts, run.facts);
-    alike.emplace(std::move(digest), is_alike);
-    if (is_alike && (branch.empty() || past.origin.branch == branch))
-      found.push_back(std::move(past));
+    if (branch.empty() || past.origin.branch == branch) found.push_back(std::move(past));
   }
   std::reverse(found.begin(), found.end());
   return found;
 }
 
-std::string History::lines_for(const PastRun& run) const {
-  const std::string begin =
-      fmt::format("{}{}{}{},", kRun, run.origin.commit, kTime, run.origin.time_s);
-  const Shared facts = shared("facts", facts_of(run.record.facts));
-  const std::vector<BaselineFigure> figures = baseline_figures(run.record);
-  const Shared names = shared("figures", names_of(figures));
-  std::vector<Shared> all{facts, names};
-  Json stages = Json::array();
-  for (const Json& stage : baseline_stages(run.record)) {
-    all.push_back(shared("stage", stage));
-    stages.push_back(all.back().digest);
-  }
-  std::string lines;
-  for (const Shared& line : all)
-    if (kept_.find(line.digest) == kept_.end()) lines += line.line;
-  Json values = Json::array();
-  for (const BaselineFigure& figure : figures) values.push_back(figure.value);
-  const auto member = [](const char* name, const Json& value) {
-    return fmt::format(",\"{}\":{}", name, json_text(value));
-  };
-  const std::string found =
-      member("facts", facts.digest) + member("figures", names.digest) + member("values", values);
-  for (const Line& line : runs_) {
-    if (line.time_s != run.origin.time_s) continue;
-    const std::string_view text = text_of(line);
-    if (!text.starts_with(begin) || digest_in(text, "facts") != facts.digest) continue;
-    if (text.find(found) != std::string_view::npos) return {};
+std::string History::line_for(const PastRun& run) const {
+  const Json line{{"run", run.origin.commit},
+                  {"time", run.origin.time_s},
+                  {"like", like_digest(run.record.facts)},
+                  {"branch", run.origin.branch},
+                  {"subject", run.origin.subject},
+                  {"limits", {{"held", run.limits.held}, {"missed", run.limits.missed}}},
+                  {"record", record_json(reduced(run.record, Level::kept))}};
+  const std::string text = json_text(line);
+  const std::string_view begin = between(text, kRun, ",\"branch\":");
+  for (const Line& known : runs_) {
+    if (known.time_s != run.origin.time_s) continue;
+    const std::string_view there = text_of(known);
+    if (!there.substr(kRun.size()).starts_with(begin) ||
+        between(there, kFacts, kStatistics) != between(text, kFacts, kStatistics))
+      continue;
+    if (between(there, kStatistics, kStages) == between(text, kStatistics, kStages)) return {};
     throw InputError(fmt::format(
         "{}: has a run of {} with this chip, profile and data already, and other figures", file_,
         short_commit(run.origin.commit)));
   }
-  return fmt::format("{}{}\"branch\":{}{}{}{}{}{}{}}}\n", lines, begin,
-                     json_text(Json(run.origin.branch)), member("subject", run.origin.subject),
-                     member("program", run.record.facts.program), member("limits", run.limits.held),
-                     member("missed", run.limits.missed), found, member("stages", stages));
+  return text + '\n';
 }
 
 void add_to_history(const std::string& file,

@@ -1,13 +1,13 @@
-// The history of a project's runs in one file: a line of JSON for every run, and a line for each
-// thing that runs share, named by the digest of what it holds. So a run whose cycles did not change
-// takes a few hundred bytes, and the lines of two histories together are a history: the file lives
-// well in version control (merge=union) or as an artifact.
+// The history of a project's runs in one file: a line of JSON for every run, so that the lines of
+// two histories together are a history: the file lives well in version control (merge=union) or as
+// an artifact.
 //
-//   {"kept":"8f3c…","what":"figures"|"facts"|"stage",…}    once, before the first run that needs it
-//   {"run":"COMMIT","time":1764133200,"branch":"main",…}   figures, limits, what it shares
+//   {"run":"COMMIT","time":1764133200,"like":"8f3c…","branch":"main","subject":…,
+//    "limits":{"held":4,"missed":[…]},"record":{…}}
 //
-// A run is read back as a baseline holds it (budget/gate.h): figures, and the larger parts of
-// each stage's cycles. Left out: frames, files of runs, hosts.
+// A run is read back as a baseline holds it (record/record.h, Level::kept). Runs that can be
+// compared have the same digest "like", so that others need not be parsed. Left out: frames, files
+// of runs, hosts.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "sim/base/pieces.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/check.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/record/record.h"
 
 namespace leviosim::tools {
 
@@ -75,7 +74,7 @@ class History {
 
   /// What has to be appended to the file for a run; nothing if it is there already.
   /// @throws InputError if this commit has such a run with other figures
-  std::string lines_for(const PastRun& run) const;
+  std::string line_for(const PastRun& run) const;
 
   /// How many lines were parsed, and bytes read from the file, since it was opened.
   std::size_t lines_parsed() const { return lines_parsed_; }
@@ -91,19 +90,16 @@ class History {
   void add_line(std::string_view text, Line line, std::size_t number);
   std::string_view text_of(const Line& line) const { return pieces_.at(line.begin, line.size); }
   Json parsed(const Line& line) const;
-  const Json& kept(const std::string& digest) const;
 
   std::string file_;
   mutable base::Pieces pieces_;
   std::uint64_t whole_size_ = 0;
   std::vector<Line> runs_;
-  std::unordered_map<std::string, Line> kept_;  ///< by digest
-  mutable std::unordered_map<std::string, Json> parsed_;
   mutable std::size_t lines_parsed_ = 0;
 };
 
 /// Adds a run to a file, made if there is none. Others that add wait.
-/// @param lines  lines_for() a run, of the history as it is now; may be called several times
+/// @param lines  line_for() a run, of the history as it is now; may be called several times
 /// @throws InputError as outputs::add_lines(), and for what is no history; Interrupted
 void add_to_history(const std::string& file,
                     const std::function<std::string(const History&)>& lines);

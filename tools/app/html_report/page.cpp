@@ -92,12 +92,12 @@ std::optional<outputs::OutputFile> claimed_report(const std::string& file, bool 
       {.option = option, .path = file, .replace = replace, .inputs = std::move(inputs)});
 }
 
-Json runs_report(const std::vector<ReportedRun>& runs,
-                 const std::vector<RunComparison>& comparisons, const CheckResult* check) {
+Json runs_report(const std::vector<RunFolder>& runs, const std::vector<RunComparison>& comparisons,
+                 const CheckResult* check) {
   Json list = Json::array();
-  for (const ReportedRun& run : runs) list.push_back(run_json(run.record, run.files));
+  for (const RunFolder& run : runs) list.push_back(run_json(run));
   std::vector<std::string> profiles;
-  for (const ReportedRun& run : runs)
+  for (const RunFolder& run : runs)
     if (std::find(profiles.begin(), profiles.end(), run.record.facts.profile) == profiles.end())
       profiles.push_back(run.record.facts.profile);
   const std::string title =
@@ -113,7 +113,7 @@ Json runs_report(const std::vector<ReportedRun>& runs,
   return data;
 }
 
-void report_and_check(const ReportedRun& run, std::optional<outputs::OutputFile>& page,
+void report_and_check(const RunFolder& run, std::optional<outputs::OutputFile>& page,
                       const std::optional<Gate>& gate, bool say) {
   std::optional<CheckResult> check;
   if (gate) check = gate->check(run.record);

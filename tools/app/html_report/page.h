@@ -17,8 +17,8 @@
 #include "sim/outputs/output_folder.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/comparison/run_record.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/record.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/table/table_files.h"
 
@@ -32,9 +32,8 @@ namespace leviosim::tools {
 // are drawn from. Everything is taken from the files of a run folder, whether they have been
 // written or not; what host and time they were made on is left out.
 
-/// @param record  of the files
-/// @throws InputError for files that do not hold what leviosim writes
-Json run_json(const RunRecord& record, const RunFiles& files);
+/// @throws InputError for tables that do not hold what leviosim writes
+Json run_json(const RunFolder& run);
 
 // A study of many points as data of a report: the points as a table of what was set and what came
 // out of it, curves over one of the settings, and the axes that the scatter begins with.
@@ -137,21 +136,15 @@ std::optional<outputs::OutputFile> claimed_report(const std::string& file, bool 
                                                   std::vector<std::filesystem::path> inputs = {},
                                                   const std::string& option = "--report");
 
-/// A run with the files that it left, or would leave.
-struct ReportedRun {
-  RunRecord record;
-  RunFiles files;
-};
-
 /// The data of a page about runs. The others are compared with the first.
 /// @param check  may be null
-Json runs_report(const std::vector<ReportedRun>& runs,
-                 const std::vector<RunComparison>& comparisons, const CheckResult* check);
+Json runs_report(const std::vector<RunFolder>& runs, const std::vector<RunComparison>& comparisons,
+                 const CheckResult* check);
 
 /// How commands that run or replay end: with the page, and what a budget says, if they are asked
 /// for.
 /// @throws LimitNotMet if a limit is not met
-void report_and_check(const ReportedRun& run, std::optional<outputs::OutputFile>& page,
+void report_and_check(const RunFolder& run, std::optional<outputs::OutputFile>& page,
                       const std::optional<Gate>& gate, bool say = true);
 
 /// Writes the page, if there is a file for it.

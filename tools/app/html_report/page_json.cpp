@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/base/error.h"
-#include "tools/app/report/json_reader.h"
+#include "tools/app/record/json_reader.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
 
@@ -26,12 +26,12 @@ void use_seconds(Json& table) {
   table["t_s"] = std::move(seconds);
 }
 
-/// The table of a file; null if the run has none.
-Json table_of(const RunRecord& record, const RunFiles& files, const char* name) {
-  const auto file = files.find(name);
-  if (file == files.end()) return nullptr;
-  const std::string where = record.name + '/' + name;
-  Json table = columns_json(read_csv(where, file->second),
+/// As columns; null if the run has none of that name.
+Json table_of(const RunFolder& run, const char* name) {
+  const auto found = run.tables.find(name);
+  if (found == run.tables.end()) return nullptr;
+  const std::string where = run.record.name + '/' + name;
+  Json table = columns_json(found->second,
                             [](const std::string& column) { return !column.ends_with("_ops"); });
   try {
     use_seconds(table);
@@ -66,17 +66,15 @@ std::optional<WorstFrame> worst_frame(const RunRecord& record, const Json& frame
   return worst;
 }
 
-/// Of the statistics of accuracy; empty if there are none.
-std::string protocol_of(const Json& statistics) {
-  for (const Json& entry : statistics.at("statistics"))
-    if (entry.at("name") == "accuracy.ate.rmse") return entry.value("protocol", "");
-  return {};
-}
-
 Json facts_of(const RunRecord& record, const Json& manifest) {
   Json facts = facts_json(record.facts);
-  facts["data"] = manifest.at("data").at("folder");
-  facts["command_line"] = manifest.at("command_line");
+  facts["program"] = record.facts.program;
+  try {
+    facts["data"] = manifest.at("data").at("folder");
+    facts["command_line"] = manifest.at("command_line");
+  } catch (const Json::exception&) {
+    throw InputError(record.name + "/manifest.json: is no manifest as leviosim writes it");
+  }
   for (const auto& [key, name] : {std::pair{"cluster_clock", "run.cluster_clock"},
                                   {"controller_clock", "run.controller_clock"},
                                   {"voltage", "run.voltage"},
@@ -160,14 +158,14 @@ void expect_columns(const std::string& where, const Json& table,
       throw InputError(where + ": has no column " + column);
 }
 
-Json tables_of(const RunRecord& record, const RunFiles& files) {
+Json tables_of(const RunFolder& run) {
   Json tables;
-  tables["frames"] = table_of(record, files, kFramesFile);
-  tables["stages"] = table_of(record, files, kStagesFile);
-  tables["memory"] = table_of(record, files, kMemoryFile);
-  tables["energy"] = table_of(record, files, kEnergyFile);
-  tables["errors"] = table_of(record, files, kErrorsFile);
-  const auto where = [&](const char* name) { return record.name + '/' + name; };
+  tables["frames"] = table_of(run, kFramesFile);
+  tables["stages"] = table_of(run, kStagesFile);
+  tables["memory"] = table_of(run, kMemoryFile);
+  tables["energy"] = table_of(run, kEnergyFile);
+  tables["errors"] = table_of(run, kErrorsFile);
+  const auto where = [&](const char* name) { return run.record.name + '/' + name; };
   expect_columns(where(kFramesFile), tables["frames"],
                  {"frame", "source", "health", "health_reasons"});
   expect_columns(where(kStagesFile), tables["stages"],
@@ -272,19 +270,20 @@ void add_energy(std::vector<KeyFigure>& list, const RunRecord& run) {
 
 }  // namespace
 
-Json run_json(const RunRecord& record, const RunFiles& files) {
-  const Json manifest = read_json("manifest.json", files.at("manifest.json"));
-  const std::string protocol = protocol_of(read_json("stats.json", files.at("stats.json")));
+Json run_json(const RunFolder& run) {
+  const RunRecord& record = run.record;
+  const Statistic* const error = record.find("accuracy.ate.rmse");
+  const std::string protocol = error == nullptr ? "" : error->protocol;
   Json json;
   json["name"] = record.name;
-  json["facts"] = facts_of(record, manifest);
-  json["tables"] = tables_of(record, files);
+  json["facts"] = facts_of(record, run.manifest);
+  json["tables"] = tables_of(run);
   json["pose_sources"] = pose_sources_json();
   json["health"] = health_json();
   json["stages"] = stages_of(record, json["tables"]["stages"]);
   const std::optional<WorstFrame> worst =
       worst_frame(record, json["tables"]["frames"], json["stages"]);
-  json["verdict"] = verdict_json(verdicts(record));
+  json["verdict"] = verdict_json(record.verdicts);
   json["verdict"]["why"] = worst ? reason_of(*worst) : "";
   json["figures"] = key_figures_json(record, protocol);
   json["protocol"] = protocol;

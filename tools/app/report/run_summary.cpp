@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "sim/base/text.h"
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
@@ -193,11 +193,6 @@ using traces::ErrorSummary;
 using traces::Evaluation;
 using traces::RelativeErrors;
 
-std::string relative_protocol(const Evaluation& evaluation) {
-  return "from every matched pose to the first that is the length farther along the true path; " +
-         evaluation.protocol;
-}
-
 std::string table_of(const std::vector<RelativeErrors>& errors) {
   Table table({{"length"},
                {"number"},
@@ -224,7 +219,7 @@ std::string table_of(const std::vector<RelativeErrors>& errors) {
 
 }  // namespace
 
-std::string verdict(const RunResult& run) { return "verdict: " + verdicts(figures_of(run)).text(); }
+std::string verdict(const RunResult& run) { return "verdict: " + figures_of(run).verdicts.text(); }
 
 std::string run_summary(const std::string& heading, const RunResult& run, int width, int others) {
   std::vector<std::string> below;
@@ -389,56 +384,6 @@ std::string relative_text(const Evaluation& evaluation, const std::vector<Relati
     text += fmt::format("no relative errors over {}: too long for {:.2f} m of path\n",
                         fmt::join(too_long, ", "), evaluation.path_length_m);
   return text;
-}
-
-void add_ate(StatisticList& list, const Evaluation& evaluation,
-             const std::optional<traces::AttitudeErrors>& attitude) {
-  const auto add = [&](const char* name, const char* unit, const char* description, Json value) {
-    list.add_with_protocol(std::string("accuracy.") + name, unit, description, std::move(value),
-                           evaluation.protocol);
-  };
-  const ErrorSummary& t = evaluation.translation;
-  add("ate.rmse", "m", "absolute trajectory error, root mean square", rounded(t.rmse));
-  add("ate.mean", "m", "absolute trajectory error, mean", rounded(t.mean));
-  add("ate.median", "m", "absolute trajectory error, median", rounded(t.median));
-  add("ate.worst", "m", "absolute trajectory error, worst", rounded(t.max));
-  if (evaluation.located_rmse_m)
-    add("ate.located", "m", "absolute trajectory error without poses that are guesses, RMS",
-        rounded(*evaluation.located_rmse_m));
-  if (attitude) {
-    add("tilt.rmse", "deg", "of the vertical, attitudes best aligned, root mean square",
-        rounded(attitude->tilt_rmse_deg));
-    add("heading.rmse", "deg", "about the vertical, attitudes best aligned, root mean square",
-        rounded(attitude->heading_rmse_deg));
-  }
-  add("matched", "1", "poses matched with the ground truth", evaluation.matched);
-  add("completion", "1", "how much of the flight has an estimate", rounded(evaluation.completion));
-  add("truth_length", "m", "of the true path", rounded(evaluation.path_length_m));
-  add("size_ratio", "1",
-      "scale: RMS distance of the estimated positions from their mean, over that of the true ones",
-      evaluation.size_ratio ? rounded(*evaluation.size_ratio) : Json());
-}
-
-void add_relative(StatisticList& list, const Evaluation& evaluation, const RelativeErrors& errors) {
-  const std::string path = fmt::format("accuracy.relative.{:g}m.", errors.length_m);
-  const std::string protocol = relative_protocol(evaluation);
-  list.add_with_protocol(path + "count", "1", "sub-trajectories of this length", errors.count,
-                         protocol);
-  const auto add = [&](const std::string& kind, const char* unit, const ErrorSummary& summary) {
-    struct Figure {
-      const char* name;
-      const char* description;
-      double value;
-    };
-    for (const Figure& f :
-         {Figure{"rmse", "root mean square", summary.rmse}, Figure{"mean", "mean", summary.mean},
-          Figure{"median", "median", summary.median}, Figure{"worst", "worst", summary.max}})
-      list.add_with_protocol(path + kind + '.' + f.name, unit,
-                             "relative " + kind + " error, " + f.description,
-                             errors.count > 0 ? rounded(f.value) : Json(nullptr), protocol);
-  };
-  add("translation", "%", errors.translation);
-  add("rotation", "deg/m", errors.rotation_deg_per_m);
 }
 
 }  // namespace leviosim::tools

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/report/statistic_list.h"
 #include "tools/app/result/run_result.h"
 #include "tools/app/table/terminal_table.h"
 #include "traces/trajectories/evaluation.h"
@@ -46,8 +45,8 @@ std::string host_line(const RunResult& run);
 /// "warning: map lost: …"; empty where the map is good (tools/app/result/verdict.h).
 std::string map_warning(const RunResult& run);
 
-// Accuracy as text and as statistics. Every command that reports it does so through these, so that
-// a figure looks the same everywhere and never goes without its protocol.
+// Accuracy as text. Every command that reports it does so through these, so that a figure looks the
+// same everywhere and never goes without its protocol.
 
 /// "ATE: … m RMSE (…)", the protocol in a second line, and attitude_text() in a third.
 std::string ate_text(const traces::Evaluation& evaluation);
@@ -60,15 +59,5 @@ std::string attitude_text(const traces::Evaluation& evaluation);
 /// lengths that are too long for the path. Empty for no lengths.
 std::string relative_text(const traces::Evaluation& evaluation,
                           const std::vector<traces::RelativeErrors>& errors);
-
-/// "accuracy.ate.rmse" and so on.
-/// @param attitude  where it is known, tilt and heading; runs leave it out, since replays do not
-///                  know it
-void add_ate(StatisticList& list, const traces::Evaluation& evaluation,
-             const std::optional<traces::AttitudeErrors>& attitude = {});
-
-/// "accuracy.relative.40m.translation.mean" and so on; null where a length has no sub-trajectory.
-void add_relative(StatisticList& list, const traces::Evaluation& evaluation,
-                  const traces::RelativeErrors& errors);
 
 }  // namespace leviosim::tools

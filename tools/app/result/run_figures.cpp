@@ -217,7 +217,8 @@ void complete(RunFigures& run, const std::vector<RecordedFrame>& frames) {
                       {run.value("accuracy.ate.rmse"), run.value("accuracy.truth_length"),
                        run.value("accuracy.size_ratio"), run.value("accuracy.ate.located")},
                       std::max<std::int64_t>(0, std::llround(left_out)));
-  for (const RunVerdict& verdict : verdicts(run).list)
+  run.verdicts = verdicts_of(run);
+  for (const RunVerdict& verdict : run.verdicts.list)
     run.statistics.push_back({fmt::format("verdict.{}", verdict.about),
                               fmt::format("{} verdict", verdict.about),
                               "0 is the best, 2 the worst", severity(verdict.grade)});

@@ -1,6 +1,6 @@
 // The figures of a run that verdicts, comparisons and budgets read: its statistics, those that need
 // every frame or every memory, and what its frames say of the map. They are the same whether the
-// run lies in memory or its folder was read (comparison/run_record.h).
+// run lies in memory or its folder was read (record/record.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -19,9 +19,10 @@ namespace leviosim::tools {
 
 struct Statistic {
   std::string name;
-  std::string unit;
-  std::string description;
-  std::optional<double> value;  ///< absent where the run has none
+  std::string unit = {};
+  std::string description = {};
+  std::optional<double> value = {};  ///< absent where the run has none
+  std::string protocol = {};         ///< of accuracy, how it was measured; else empty
 };
 
 /// A figure of a run as a whole that people name. Budgets, comparisons, the history, summaries and
@@ -96,10 +97,34 @@ struct MapSigns {
   std::optional<int> at_rest_since;  ///< the frame from which on the vehicle rests until the end
 };
 
+enum class Grade { good, unknown, doubtful, bad };
+/// "good", "unknown", "doubtful", "bad": in files.
+std::string_view name_of(Grade grade);
+
+struct RunVerdict {
+  std::string_view about;  ///< "time", "memory", "map"
+  Grade grade = Grade::good;
+  std::vector<std::string> reasons;
+
+  std::string_view word() const;  ///< "fits on average"
+  std::string reason() const;     ///< the reasons in a row; may be empty
+  std::string text() const;       ///< "map lost: the error is 37.8 % of the path"
+};
+
+struct Verdicts {
+  std::vector<RunVerdict> list;  ///< time, memory, map; native runs have the last only
+
+  /// The worst; good only if all are.
+  Grade grade() const;
+  /// One line, the worst first. "no frames" if there is nothing to judge.
+  std::string text() const;
+};
+
 struct RunFigures {
-  std::vector<StageName> stages;      ///< in the order of the run
-  std::vector<Statistic> statistics;  ///< that are numbers
-  MapSigns map;
+  std::vector<StageName> stages = {};  ///< in the order of the run
+  std::vector<Statistic> statistics = {};
+  Verdicts verdicts = {};  ///< verdict.h
+  MapSigns map = {};       ///< of a run in memory; files hold the verdicts that come of it
 
   /// Null if there is none of that name.
   const Statistic* find(std::string_view statistic) const;

@@ -254,7 +254,7 @@ RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
   return verdict;
 }
 
-Verdicts verdicts(const RunFigures& run) {
+Verdicts verdicts_of(const RunFigures& run) {
   Verdicts all;
   if (run.value("frames.count").value_or(0) == 0 && !run.value("camera.arrived")) return all;
   if (std::optional<RunVerdict> time = time_verdict(run)) all.list.push_back(std::move(*time));

@@ -18,21 +18,8 @@
 
 namespace leviosim::tools {
 
-enum class Grade { good, unknown, doubtful, bad };
-/// "good", "unknown", "doubtful", "bad": in files.
-std::string_view name_of(Grade grade);
 /// As a figure, in baselines and budgets: 0 good, ½ unknown, 1 doubtful, 2 bad.
 double severity(Grade grade);
-
-struct RunVerdict {
-  std::string_view about;  ///< "time", "memory", "map"
-  Grade grade = Grade::good;
-  std::vector<std::string> reasons;
-
-  std::string_view word() const;  ///< "fits on average"
-  std::string reason() const;     ///< the reasons in a row; may be empty
-  std::string text() const;       ///< "map lost: the error is 37.8 % of the path"
-};
 
 /// The words of a kind of verdict, from the best on. Empty for another name.
 struct VerdictWord {
@@ -42,16 +29,8 @@ struct VerdictWord {
 };
 const std::vector<VerdictWord>& verdict_words();
 
-struct Verdicts {
-  std::vector<RunVerdict> list;  ///< time, memory, map; native runs have the last only
-
-  /// The worst; good only if all are.
-  Grade grade() const;
-  /// One line, the worst first. "no frames" if there is nothing to judge.
-  std::string text() const;
-};
-
-Verdicts verdicts(const RunFigures& run);
+/// Of statistics and of the signs of the map; readers find them in RunFigures::verdicts.
+Verdicts verdicts_of(const RunFigures& run);
 
 /// On paths below this, the scale says nothing of the map, nor does a small error; a large one
 /// counts as on a path of this length.

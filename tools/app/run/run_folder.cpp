@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
+#include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 #include "sim/base/sha256.h"
+#include "sim/outputs/output_record.h"
 #include "sim/work/op.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/result/summary.h"
 #include "traces/trajectories/trajectory.h"
 
@@ -229,6 +234,70 @@ Json platform_json(const Manifest& manifest, const RunResult& run) {
 
 namespace fs = std::filesystem;
 
+std::vector<std::pair<std::string, std::string>> digests(const Json& inputs) {
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const Json& input : inputs)
+    list.emplace_back(input.at("name").get<std::string>(), input.at("sha256").get<std::string>());
+  return list;
+}
+
+RunFacts facts_of(const Manifest& manifest, const RunResult& run) {
+  RunFacts facts;
+  facts.program = fmt::format("{} {}", version(), revision());
+  facts.profile = run.profile;
+  facts.workload = manifest.workload;
+  facts.seed = manifest.seed;
+  if (run.timed) {
+    facts.platform = manifest.platform;
+    facts.overrides = manifest.overrides;
+    facts.cores = run.cores;
+  }
+  if (run.camera)
+    facts.camera =
+        fmt::format("{:g} frames/s, {}", run.camera->fps, info_of(run.camera->deadline).name);
+  facts.image_width = run.image_width;
+  facts.image_height = run.image_height;
+  facts.first_frame = static_cast<std::int64_t>(manifest.first_frame);
+  facts.frames = static_cast<std::int64_t>(expected_poses(run));
+  // The work of a replay came from the data of its recording.
+  facts.inputs = digests(manifest.recording.is_null() ? inputs_json(manifest.inputs)
+                                                      : manifest.recording.at("inputs"));
+  return facts;
+}
+
+/// The files of a folder, each of which has to hold what the run wrote.
+class RecordedFiles {
+ public:
+  explicit RecordedFiles(fs::path folder)
+      : folder_(std::move(folder)), record_(outputs::OutputRecord::read(folder_)) {
+    // Of other files that were written here later, such as a report.
+    if (record_ && !record_->names(kRecordFile)) record_.reset();
+  }
+
+  bool holds(const char* name) const {
+    if (base::exists(folder_ / name)) return true;
+    if (record_ && record_->names(name)) fail(name, "is missing");
+    return false;
+  }
+  std::string read(const char* name) const {
+    if (!holds(name)) fail(name, "is missing");
+    std::string bytes = base::read_file(folder_ / name, base::InputKind::run_file);
+    const outputs::FileState state = outputs::state_of_bytes(bytes);
+    if (record_ && !record_->says(name, state))
+      fail(name, fmt::format("holds {} bytes of SHA-256 {:.12}...", state.size, state.sha256));
+    return bytes;
+  }
+
+ private:
+  [[noreturn]] void fail(const char* name, const std::string& found) const {
+    throw InputError(fmt::format("{}: {}; expected what {} says the run wrote",
+                                 (folder_ / name).string(), found, outputs::kRecordName));
+  }
+
+  fs::path folder_;
+  std::optional<outputs::OutputRecord> record_;
+};
+
 InputDigest digest_of(std::string name, const std::vector<fs::path>& files, base::InputKind kind) {
   InputDigest digest;
   digest.name = std::move(name);
@@ -279,36 +348,78 @@ Table energy_rows(const RunResult& run) {
   return table_of(energy_table(), rows);
 }
 
-RunFiles run_files(const RunResult& run, const Manifest& manifest,
-                   const std::string& platform_yaml) {
-  RunFiles files{{"manifest.json", json_text(manifest_json(manifest, run), 2) + '\n'},
-                 {"stats.json", statistics_text(run)},
-                 {kFramesFile, csv_text(frame_rows(run))},
-                 {"trajectory.tum", traces::format_tum(run.trajectory)}};
-  if (std::string errors = csv_text(error_rows(run)); !errors.empty())
-    files[kErrorsFile] = std::move(errors);
-  if (!run.timed) return files;
-  files["platform.yaml"] = platform_yaml;
-  files[kStagesFile] = csv_text(stage_rows(run));
-  files[kMemoryFile] = csv_text(memory_rows(run));
-  if (std::string energy = csv_text(energy_rows(run)); !energy.empty())
-    files[kEnergyFile] = std::move(energy);
+RunRecord make_record(std::string name, const Manifest& manifest, const RunResult& run) {
+  RunRecord record{figures_of(run)};
+  record.name = std::move(name);
+  record.facts = facts_of(manifest, run);
+  if (run.timed) record.cycles = cycle_parts(run);
+  return record;
+}
+
+RunFolder run_folder(std::string name, const RunResult& run, const Manifest& manifest,
+                     const std::string& platform_yaml) {
+  RunFolder folder{make_record(std::move(name), manifest, run), manifest_json(manifest, run)};
+  const auto add = [&](const char* file, Table table) {
+    if (!table.heads().empty()) folder.tables.emplace(file, std::move(table));
+  };
+  add(kFramesFile, frame_rows(run));
+  add(kErrorsFile, error_rows(run));
+  folder.others["trajectory.tum"] = traces::format_tum(run.trajectory);
+  if (!run.timed) return folder;
+  add(kStagesFile, stage_rows(run));
+  add(kMemoryFile, memory_rows(run));
+  add(kEnergyFile, energy_rows(run));
+  add(kCyclesFile, cycle_rows(folder.record.cycles));
+  folder.others["platform.yaml"] = platform_yaml;
+  return folder;
+}
+
+std::map<std::string, std::string> files_of(const RunFolder& run) {
+  std::map<std::string, std::string> files = run.others;
+  files[kRecordFile] = record_text(run.record);
+  files[kManifestFile] = json_text(run.manifest, 2) + '\n';
+  for (const auto& [name, table] : run.tables) files[name] = csv_text(table);
   return files;
 }
 
-void write_run_files(outputs::OutputFolder& out, const RunFiles& files, const std::string& below) {
-  for (const auto& [name, text] : files) out.write(below + name, text);
+void write_run_folder(outputs::OutputFolder& out, const RunFolder& run, const std::string& below) {
+  for (const auto& [name, text] : files_of(run)) out.write(below + name, text);
 }
 
-void write_run_folder(outputs::OutputFolder& out, const RunResult& run, const Manifest& manifest,
-                      const std::string& platform_yaml, const std::string& below) {
-  write_run_files(out, run_files(run, manifest, platform_yaml), below);
+RunFolder read_run_folder(const fs::path& folder, bool with_tables) {
+  const RecordedFiles files(folder);
+  if (!files.holds(kRecordFile))
+    throw InputError(fmt::format("{}: {}", folder.string(),
+                                 base::exists(folder / "stats.json")
+                                     ? "is of an earlier leviosim, without run.json: run it again"
+                                     : "no run folder; expected a folder that run or replay left, "
+                                       "with run.json"));
+  RunFolder run{parse_record((folder / kRecordFile).string(), files.read(kRecordFile), Level::all),
+                {}};
+  run.record.name = folder.string();
+  if (!with_tables) return run;
+  run.manifest = read_json((folder / kManifestFile).string(), files.read(kManifestFile));
+  for (const char* name : {kFramesFile, kStagesFile, kMemoryFile, kEnergyFile, kErrorsFile})
+    if (files.holds(name)) {
+      const std::string text = files.read(name);
+      if (!text.ends_with('\n'))
+        throw InputError(
+            fmt::format("{}: ends within a line: it was cut off", (folder / name).string()));
+      run.tables.emplace(name, read_csv((folder / name).string(), text));
+    }
+  const auto frames = run.tables.find(kFramesFile);
+  const std::int64_t rows = frames == run.tables.end() ? 0 : std::ssize(frames->second.rows());
+  if (rows != run.record.facts.frames)
+    throw InputError(fmt::format("{}: has {} frames; expected {}, as {} says",
+                                 (folder / kFramesFile).string(), rows, run.record.facts.frames,
+                                 kRecordFile));
+  return run;
 }
 
 Json manifest_json(const Manifest& manifest, const RunResult& run) {
   Json document;
   document["format"] = "leviosim manifest";
-  document["version"] = kManifestVersion;
+  document["version"] = 3;
   document["program"]["version"] = version();
   document["program"]["revision"] = revision();
   document["command_line"] = manifest.command_line;

@@ -1,20 +1,22 @@
 // The files that a run leaves behind. Same inputs, same bytes, except the member "host" of
 // manifest.json.
 //
-//   manifest.json    what the run was made from
+//   run.json         the record (record/record.h): facts, figures, verdicts, cycles by cause
+//   manifest.json    what the run was made from, and by whom
 //   platform.yaml    the resolved platform, overrides included; loads as a platform file
-//   stats.json       every statistic with name, unit and description (statistics.h)
 //   stages.csv       a row per stage: calls, cycles, breakdown on N cores and on one, operations
 //   frames.csv       a row per frame, with the cycles of each stage on N cores
 //   errors.csv       a row per pose that has a truth: both positions after alignment, and the error
 //   memory.csv       a row per peak, and per block alive at it
 //   energy.csv       a row per stage, quantity and domain of the chip, with its band
+//   cycles.csv       where the cycles of each stage went, as in run.json
 //   trajectory.tum   poses of the body, for evo and rpg_trajectory_evaluation
 //   work.trace       with --record: all work (traces/work_traces/work_trace.h), for leviosim replay
 //   replay.csv       of a replay: how each frame began, in the recording and now
 //
-// A native run has no platform.yaml, stages.csv, memory.csv and energy.csv, and no timing columns.
-// A platform without energy figures leaves no energy.csv.
+// A native run has no platform.yaml, stages.csv, memory.csv, energy.csv and cycles.csv, and no
+// timing columns. A platform without energy figures leaves no energy.csv. Programs read run.json;
+// pages also the tables.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +26,7 @@
 #include <vector>
 
 #include "sim/outputs/output_folder.h"
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/record.h"
 #include "tools/app/result/run_result.h"
 #include "tools/app/table/table_files.h"
 #include "traces/datasets/dataset.h"
@@ -48,10 +50,6 @@ InputDigest digest_of_file(const std::filesystem::path& file);
 /// their image files. @throws InputError for files that cannot be read
 std::vector<InputDigest> digest_inputs(const traces::Dataset& data);
 
-/// Of manifests, and so of run folders: the one that is written and read. It rises when a file of
-/// the folder gets other columns.
-inline constexpr int kManifestVersion = 2;
-
 struct Manifest {
   std::vector<std::string> command_line;  ///< words as typed
   std::uint32_t seed = 1;                 ///< of the workload
@@ -68,6 +66,8 @@ struct Manifest {
 /// between two runs of the same program on the same inputs.
 Json manifest_json(const Manifest& manifest, const RunResult& run);
 
+inline constexpr const char* kRecordFile = "run.json";
+inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kWorkTraceFile = "work.trace";
 inline constexpr const char* kReplayFile = "replay.csv";
 inline constexpr const char* kFramesFile = "frames.csv";
@@ -75,25 +75,40 @@ inline constexpr const char* kStagesFile = "stages.csv";
 inline constexpr const char* kMemoryFile = "memory.csv";
 inline constexpr const char* kEnergyFile = "energy.csv";
 inline constexpr const char* kErrorsFile = "errors.csv";
+inline constexpr const char* kCyclesFile = "cycles.csv";
 
 /// Begins the columns of frames.csv with the cycles of a stage: "cycles_epnp_ransac".
 inline constexpr const char* kStageColumn = "cycles_";
 
-/// Name → text, of what the folder of a run holds.
-using RunFiles = std::map<std::string, std::string>;
-RunFiles run_files(const RunResult& run, const Manifest& manifest,
-                   const std::string& platform_yaml);
+/// The record of a run that lies in memory.
+RunRecord make_record(std::string name, const Manifest& manifest, const RunResult& run);
+
+/// What the folder of a run holds.
+struct RunFolder {
+  RunRecord record;
+  Json manifest;
+  std::map<std::string, Table> tables = {};  ///< by the names of their files
+  /// Name → content of what programs do not read.
+  std::map<std::string, std::string> others = {};
+};
+
+/// @param name           of the record
+/// @param platform_yaml  unused for a native run
+RunFolder run_folder(std::string name, const RunResult& run, const Manifest& manifest,
+                     const std::string& platform_yaml);
+
+/// Name → content.
+std::map<std::string, std::string> files_of(const RunFolder& run);
 
 /// Writes into a folder that the caller has claimed. @throws InputError if a file cannot be written
-void write_run_files(outputs::OutputFolder& out, const RunFiles& files,
-                     const std::string& below = {});
+/// @param below  folder in it, "chosen/"
+void write_run_folder(outputs::OutputFolder& out, const RunFolder& run,
+                      const std::string& below = {});
 
-/// Both.
-/// @param platform_yaml  unused for a native run
-/// @param below          folder in it, "chosen/"
-/// @throws InputError if a file cannot be written
-void write_run_folder(outputs::OutputFolder& out, const RunResult& run, const Manifest& manifest,
-                      const std::string& platform_yaml, const std::string& below = {});
+/// Reads what is as the run wrote it; without the other files.
+/// @param with_tables  and the manifest; else the record alone
+/// @throws InputError if the folder is not that of a run
+RunFolder read_run_folder(const std::filesystem::path& folder, bool with_tables);
 
 /// The tables of the CSV files; the units stand in the keys.
 Table stage_rows(const RunResult& run);

@@ -12,10 +12,11 @@
 #include "sim/energy/model.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/report/run_summary.h"
-#include "tools/app/report/statistics.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/flight_cache.h"
+#include "tools/app/run/record_source.h"
 #include "tools/app/run/workload.h"
 #include "traces/recordings/recording.h"
 
@@ -190,7 +191,8 @@ void check_print_options(const RunOptions& options, const std::string& budget) {
   parse_tables(options.tables);
 }
 
-Printout run_printout(const RunOptions& options, const RunResult& run, const std::string& remarks) {
+Printout run_printout(const RunOptions& options, const RunResult& run, const RunRecord& record,
+                      const std::string& remarks) {
   const auto lines = [&] {
     const std::string title = heading(options, run);
     const int width = output_width();
@@ -204,7 +206,7 @@ Printout run_printout(const RunOptions& options, const RunResult& run, const std
                                  shell_word(options.out)) +
                      (options.record ? "" : " --out report.html")});
   };
-  return printout(options.json, lines, [&] { return statistics_text(run); });
+  return printout(options.json, lines, [&] { return record_text(record); });
 }
 
 }  // namespace leviosim::tools

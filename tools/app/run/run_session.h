@@ -65,7 +65,7 @@ Manifest replay_manifest(const traces::WorkTrace& trace, const InputDigest& dige
 std::string heading(const RunOptions& options, const RunResult& run);
 
 // What commands that run a workload print of it: the summary, the tables that --tables names, or
-// with --json the statistics.
+// with --json the record.
 
 /// Declares --tables and --json.
 void add_print_options(CLI::App& command, RunOptions& options);
@@ -75,7 +75,7 @@ void add_print_options(CLI::App& command, RunOptions& options);
 void check_print_options(const RunOptions& options, const std::string& budget);
 
 /// @param remarks  that stand between heading and tables
-Printout run_printout(const RunOptions& options, const RunResult& run,
+Printout run_printout(const RunOptions& options, const RunResult& run, const RunRecord& record,
                       const std::string& remarks = {});
 
 }  // namespace leviosim::tools

@@ -12,7 +12,7 @@
 #include <deque>
 #include <string>
 
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/simulate.h"
 #include "traces/work_traces/work_frames.h"

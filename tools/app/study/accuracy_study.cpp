@@ -42,16 +42,19 @@ std::optional<LoopOutcome> loop_of(const RunResult& run) {
   return loop;
 }
 
+constexpr const char* kAte = "ate_m";
+
 /// The numbers of an outcome by their names: all of them are written to figures, or read.
 class Numbers {
  public:
-  explicit Numbers(Outcome& figures) : writes_to_(&figures) {}
-  explicit Numbers(const Outcome& figures) {
-    for (const Figure& figure : figures.figures) read_[figure.name] = figure.value;
+  explicit Numbers(RunRecord& record) : writes_to_(&record) {}
+  explicit Numbers(const RunRecord& record) {
+    for (const Statistic& s : record.statistics)
+      if (s.value) read_[s.name] = *s.value;
   }
 
   void all_of(RunOutcome& outcome) {
-    take("ate_m", outcome.ate_m);
+    take(kAte, outcome.ate_m);
     take("relative_percent", outcome.relative_percent);
     take("sub_trajectories", outcome.sub_trajectories);
     take("frames", outcome.frames);
@@ -88,7 +91,7 @@ class Numbers {
   template <class Number>
   void take(const std::string& name, Number& value) {
     if (writes_to_ != nullptr)
-      writes_to_->figures.push_back({name, {}, static_cast<double>(value)});
+      writes_to_->statistics.push_back({.name = name, .value = static_cast<double>(value)});
     else
       value = static_cast<Number>(number(name, !std::is_floating_point_v<Number>));
   }
@@ -113,7 +116,7 @@ class Numbers {
     return it->second;
   }
 
-  Outcome* writes_to_ = nullptr;
+  RunRecord* writes_to_ = nullptr;
   std::map<std::string, double> read_;
 };
 
@@ -217,18 +220,21 @@ Json figure_json(const std::optional<double>& figure) {
   return figure ? rounded(*figure) : Json(nullptr);
 }
 
-Outcome figures_of(const RunOutcome& outcome) {
-  Outcome figures{outcome.failure, {}, outcome.protocol};
+RunRecord record_of(const RunOutcome& outcome) {
+  RunRecord record;
+  record.failure = outcome.failure;
   RunOutcome written = outcome;
-  Numbers(figures).all_of(written);
-  return figures;
+  Numbers(record).all_of(written);
+  for (Statistic& s : record.statistics)
+    if (s.name == kAte) s.protocol = outcome.protocol;
+  return record;
 }
 
-RunOutcome run_outcome_of(const Outcome& figures) {
+RunOutcome run_outcome_of(const RunRecord& record) {
   RunOutcome outcome;
-  outcome.failure = figures.failure;
-  outcome.protocol = figures.protocol;
-  Numbers(figures).all_of(outcome);
+  outcome.failure = record.failure;
+  if (const Statistic* ate = record.find(kAte)) outcome.protocol = ate->protocol;
+  Numbers(record).all_of(outcome);
   return outcome;
 }
 
@@ -246,8 +252,8 @@ std::vector<RunOutcome> run_outcomes(const std::vector<Point>& points, const Mea
     throw_if_interrupted();
     batch.keys.push_back(run_key(point, how, schema));
   }
-  batch.compute = [&](std::size_t i) { return figures_of(compute(points[i], how)); };
-  batch.take = [&](std::size_t i, const Outcome& o) { outcomes[i] = run_outcome_of(o); };
+  batch.compute = [&](std::size_t i) { return record_of(compute(points[i], how)); };
+  batch.take = [&](std::size_t i, const RunRecord& o) { outcomes[i] = run_outcome_of(o); };
   run_points(batch, options);
   return outcomes;
 }

@@ -11,7 +11,7 @@
 #include "sim/base/csv.h"
 #include "sim/outputs/output_folder.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/study/engine.h"
 #include "tools/app/table/banded.h"
@@ -80,8 +80,8 @@ std::string error_text(const std::optional<double>& error, int decimals);
 Json figure_json(const std::optional<double>& figure);
 
 /// As it is kept, and back.
-Outcome figures_of(const RunOutcome& outcome);
-RunOutcome run_outcome_of(const Outcome& figures);
+RunRecord record_of(const RunOutcome& outcome);
+RunOutcome run_outcome_of(const RunRecord& record);
 
 /// What the outcome of a run is kept under.
 std::string run_key(const Point& point, const Measure& how, const platform::Schema& schema);

@@ -20,7 +20,7 @@
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/report/json_reader.h"
+#include "tools/app/record/json_reader.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/workload.h"
 #include "traces/recordings/recording.h"
@@ -62,13 +62,11 @@ double path_over_frames(const traces::Dataset& data) {
   return length;
 }
 
-constexpr const char* kFormat = "leviosim outcome 2";
-
 constexpr std::uint64_t kLargestFile = 64 << 20;
 
 /// The first line of a file, by which it is known to be what was stored under the key.
 std::string header_of(const std::string& key, const std::string& text) {
-  return fmt::format("leviosim cache 2 {} {}\n", key, base::sha256_of(text));
+  return fmt::format("leviosim cache 3 {} {}\n", key, base::sha256_of(text));
 }
 
 /// The one that commands use unless told otherwise.
@@ -182,39 +180,6 @@ Sequence open_sequence(const NamedFolder& named, const std::optional<traces::Fra
           work_of(data, digest)};
 }
 
-void add_outcome(const Outcome& outcome, Json& line) {
-  line["failure"] = outcome.failure;
-  if (!outcome.protocol.empty()) line["protocol"] = outcome.protocol;
-  line["figures"] = Json::array();
-  for (const Figure& f : outcome.figures)
-    line["figures"].push_back(Json::array({f.name, f.unit, f.value}));
-}
-
-Outcome outcome_of(const Json& line) {
-  Outcome outcome{line.at("failure").get<std::string>(), {}, line.value("protocol", "")};
-  for (const Json& f : line.at("figures"))
-    outcome.figures.push_back(
-        {f.at(0).get<std::string>(), f.at(1).get<std::string>(), f.at(2).get<double>()});
-  return outcome;
-}
-
-std::string to_text(const Outcome& outcome) {
-  Json json;
-  json["format"] = kFormat;
-  add_outcome(outcome, json);
-  return json_text(json) + '\n';
-}
-
-std::optional<Outcome> parse_outcome(std::string_view text) {
-  try {
-    const std::optional<Json> json = try_read_json(text);
-    if (!json || json->at("format") != kFormat) return std::nullopt;
-    return outcome_of(*json);
-  } catch (const Json::exception&) {
-    return std::nullopt;
-  }
-}
-
 /// Folders of a few files each, also after a million runs.
 fs::path OutcomeCache::file_of(const std::string& key) const {
   return folder_ / key.substr(0, 2) / (key + ".json");
@@ -230,14 +195,20 @@ std::optional<std::string> OutcomeCache::find_text(const std::string& key) const
   return text;
 }
 
-std::optional<Outcome> OutcomeCache::find(const std::string& key) const {
+std::optional<RunRecord> OutcomeCache::find(const std::string& key) const {
   const std::optional<std::string> text = find_text(key);
-  return text ? parse_outcome(*text) : std::nullopt;
+  const std::optional<Json> json = text ? try_read_json(*text) : std::nullopt;
+  if (!json) return std::nullopt;
+  try {
+    return record_of_json("", *json, Level::figures);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
-void OutcomeCache::store(const std::string& key, const Outcome& outcome) const {
+void OutcomeCache::store(const std::string& key, const RunRecord& outcome) const {
   if (find_text(key)) return;  // another process was faster
-  const std::string text = to_text(outcome);
+  const std::string text = json_text(record_json(outcome)) + '\n';
   const fs::path file = file_of(key);
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
@@ -302,7 +273,7 @@ Tally run_points(const PointBatch& batch, const RunnerOptions& options) {
   Tally tally{.total = batch.before + batch.keys.size(), .before = batch.before};
   base::parallel_for(chains.firsts.size(), options.threads, [&](std::size_t chain) {
     const std::size_t first = chains.firsts[chain];
-    std::optional<Outcome> outcome = cache.find(batch.keys[first]);
+    std::optional<RunRecord> outcome = cache.find(batch.keys[first]);
     std::size_t& count = outcome ? tally.found : tally.computed;
     if (!outcome) {
       outcome = batch.compute(first);

@@ -10,7 +10,7 @@
 
 #include "platform_models/loader/schema.h"
 #include "tools/app/cli/terminal.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/record.h"
 #include "tools/app/run/run_request.h"
 #include "traces/datasets/dataset.h"
 #include "traces/work_traces/work_trace.h"
@@ -77,36 +77,10 @@ std::string work_of(const traces::Dataset& data, const std::string& digest);
 Sequence open_sequence(const NamedFolder& named, const std::optional<traces::FrameRange>& frames,
                        const std::vector<traces::ImageSize>& sizes);
 
-// What is kept of a point that was computed: figures, or why there are none. The same whether it
-// has just been computed or was found in the cache.
-
-struct Figure {
-  std::string name;
-  std::string unit;
-  double value = 0;
-};
-
-struct Outcome {
-  std::string failure;  ///< why the point cannot be run to its end, such as too little L1
-  std::vector<Figure> figures;
-  std::string protocol{};  ///< of errors of trajectories among the figures
-};
-
-/// Adds its members to a line of JSON, with every bit of the numbers: those of a cached outcome and
-/// of a point of a sweep.
-void add_outcome(const Outcome& outcome, Json& line);
-/// @throws Json::exception for what add_outcome() never wrote
-Outcome outcome_of(const Json& line);
-
-/// As one line.
-std::string to_text(const Outcome& outcome);
-/// Nothing for what to_text() never wrote, such as a file that was cut off.
-std::optional<Outcome> parse_outcome(std::string_view text);
-
-// Outcomes of finished points on disk, those of all studies together: one small file each, written
-// whole or not at all, found by its key. A file begins with its key and a digest of the rest: what
-// is damaged or lies under another key's name counts as absent, and is written anew. Several
-// programs may use one folder at the same time.
+// Records of finished points on disk (record/record.h, Level::figures), those of all studies
+// together: one small file each, written whole or not at all, found by its key. A file begins with
+// its key and a digest of the rest: what is damaged or lies under another key's name counts as
+// absent, and is written anew. Several programs may use one folder at the same time.
 
 class OutcomeCache {
  public:
@@ -114,9 +88,9 @@ class OutcomeCache {
   explicit OutcomeCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   /// Nothing if the point is not there, or cannot be read.
-  std::optional<Outcome> find(const std::string& key) const;
+  std::optional<RunRecord> find(const std::string& key) const;
   /// @throws InputError if it cannot be written
-  void store(const std::string& key, const Outcome& outcome) const;
+  void store(const std::string& key, const RunRecord& outcome) const;
 
  private:
   std::optional<std::string> find_text(const std::string& key) const;
@@ -175,9 +149,9 @@ struct PointBatch {
   std::size_t before = 0;           ///< further points of the study, which are finished
   bool keeps_failures = true;       ///< in the cache
   /// Called by several threads.
-  std::function<Outcome(std::size_t point)> compute{};
+  std::function<RunRecord(std::size_t point)> compute{};
   /// Called by one thread at a time, once per point, in the order in which they end.
-  std::function<void(std::size_t point, const Outcome& outcome)> take{};
+  std::function<void(std::size_t point, const RunRecord& outcome)> take{};
 };
 
 /// What is finished is in the cache and taken, whatever becomes of the rest.

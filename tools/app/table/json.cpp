@@ -7,6 +7,20 @@
 #include "sim/base/text.h"
 
 namespace leviosim::tools {
+namespace {
+
+std::string on_lines(const Json& json, int levels) {
+  if (levels == 0 || !json.is_structured() || json.empty()) return json_text(json);
+  std::string text;
+  for (const auto& item : json.items()) {
+    text += text.empty() ? "\n" : ",\n";
+    if (json.is_object()) text += json_text(item.key()) + ": ";
+    text += on_lines(item.value(), levels - 1);
+  }
+  return json.is_object() ? '{' + text + "\n}" : '[' + text + "\n]";
+}
+
+}  // namespace
 
 std::string json_text(const Json& json, int indent) {
   std::string text = json.dump(indent, ' ', false, Json::error_handler_t::replace);
@@ -26,5 +40,18 @@ std::string json_text(const Json& json, int indent) {
 Json value_of(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
 
 Json rounded(double value) { return std::round(value * 1e9) / 1e9; }
+
+void add_member(Json& object, const std::string& name, Json value) {
+  object.get_ref<Json::object_t&>().emplace_back(name, std::move(value));
+}
+
+Json number_json(std::optional<double> value) {
+  constexpr double kExact = 0x1p53;
+  if (value && *value == std::floor(*value) && std::abs(*value) < kExact)
+    return static_cast<std::int64_t>(*value);
+  return value_of(value);
+}
+
+std::string json_lines(const Json& document) { return on_lines(document, 2); }
 
 }  // namespace leviosim::tools

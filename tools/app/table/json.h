@@ -21,4 +21,14 @@ Json value_of(std::optional<double> value);
 /// Nine decimals, as trajectory files have.
 Json rounded(double value);
 
+/// Adds a member without looking for its name among those before it.
+void add_member(Json& object, const std::string& name, Json value);
+
+/// Whole numbers without a fraction; null for what does not exist.
+Json number_json(std::optional<double> value);
+
+/// A document whose members, and the members and items of these, are on lines of their own, so that
+/// two can be compared line by line.
+std::string json_lines(const Json& document);
+
 }  // namespace leviosim::tools

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
@@ -38,12 +39,10 @@ struct JsonValue {
   Json operator()(std::int64_t n) const { return n; }
   Json operator()(double value) const {
     constexpr double kWhole = 0x1p53;
-    if (decimals > 0) {
-      const double power = std::pow(10.0, decimals);
-      return std::abs(value) < kWhole / power ? std::round(value * power) / power : value;
-    }
-    if (decimals == 0 && std::abs(value) < kWhole) return std::llround(value);
-    return value;
+    if (decimals < 0 || !(std::abs(value) < kWhole)) return value;
+    // As CSV has it, where the number lies in the middle of two, too.
+    const double shown = std::strtod(fmt::format("{:.{}f}", value, decimals).c_str(), nullptr);
+    return decimals == 0 ? Json(static_cast<std::int64_t>(shown)) : Json(shown);
   }
   Json operator()(const Banded& b) const { return (*this)(b.value); }
   Json operator()(const std::string& words) const {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/validation/frame_log.h"
 #include "tools/app/validation/references.h"

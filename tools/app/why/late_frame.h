@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/main_causes.h"
 #include "tools/app/run/simulate.h"
 
 namespace leviosim::tools {

@@ -37,7 +37,7 @@ __all__ = ["InputError", "Platform", "Run", "Statistic", "evaluate", "platforms"
 
 
 class Statistic(NamedTuple):
-    """A row of stats.json."""
+    """A statistic of run.json."""
 
     name: str
     unit: str
@@ -63,8 +63,8 @@ def _table(text: str) -> Table:
     return {name: _array([row[i] for row in rows[1:]]) for i, name in enumerate(rows[0])}
 
 
-def _statistics(rows: List[Dict[str, Any]]) -> Dict[str, Statistic]:
-    return {r["name"]: Statistic(r["name"], r["unit"], r["description"], r["value"]) for r in rows}
+def _statistics(members: Dict[str, List[Any]]) -> Dict[str, Statistic]:
+    return {name: Statistic(name, unit, description, value) for name, (value, unit, description, *_) in members.items()}
 
 
 def _words(settings: Settings) -> List[str]:
@@ -120,7 +120,7 @@ class Run(Mapping[str, Any]):
 
     def __init__(self, files: Dict[str, Union[str, bytes]]) -> None:
         self.files = files
-        self.statistics: Dict[str, Statistic] = _statistics(json.loads(files["stats.json"])["statistics"])
+        self.statistics: Dict[str, Statistic] = _statistics(json.loads(files["run.json"])["statistics"])
 
     def __getitem__(self, name: str) -> Any:
         return self.statistics[name].value

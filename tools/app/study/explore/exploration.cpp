@@ -15,7 +15,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/run/workload.h"
 #include "tools/app/study/sweep/points.h"
 #include "tools/app/table/terminal_table.h"

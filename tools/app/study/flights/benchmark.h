@@ -33,7 +33,7 @@
 
 #include "sim/base/builtin_file.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/engine.h"
 #include "tools/app/table/terminal_table.h"

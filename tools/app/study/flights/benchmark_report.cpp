@@ -10,7 +10,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/flights/benchmark.h"
 #include "tools/app/table/terminal_table.h"

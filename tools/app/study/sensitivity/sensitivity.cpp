@@ -11,7 +11,7 @@
 #include "sim/chip/accelerator.h"
 #include "sim/soc/job_timer.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/range_bands.h"
 #include "tools/app/run/run_session.h"

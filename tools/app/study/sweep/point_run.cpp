@@ -15,7 +15,7 @@
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/known_runs.h"
 #include "tools/app/run/run_request.h"
@@ -30,51 +30,34 @@
 namespace leviosim::tools {
 namespace {
 
-/// Parts of names of statistics that a sweep leaves to run folders: a thousand figures per point
-/// that add up to others.
-constexpr std::array kLeftOut{".ops.", ".code.", ".breakdown.", ".block.", ".domain."};
-
-bool is_kept(const std::string& name) {
-  return std::none_of(kLeftOut.begin(), kLeftOut.end(),
-                      [&](const char* part) { return name.find(part) != std::string::npos; });
-}
-
-void add_comparison(const Replay& replay, std::vector<Figure>& figures) {
+/// How the replay compares with what is on record. Where the algorithm would have computed
+/// something else, nothing is known of its accuracy.
+void add_comparison(const Replay& replay, std::vector<Statistic>& statistics) {
   const auto differs = [](const FrameComparison& f) { return !f.computes_the_same(); };
   const auto count = std::count_if(replay.frames.begin(), replay.frames.end(), differs);
-  figures.push_back({"replay.differing_frames", "1", static_cast<double>(count)});
+  const auto add = [&](const char* name, double value) {
+    statistics.push_back({.name = name, .unit = "1", .value = value});
+  };
+  add("replay.differing_frames", static_cast<double>(count));
   if (count == 0) return;
   const auto first = std::find_if(replay.frames.begin(), replay.frames.end(), differs);
-  figures.push_back({"replay.first_differing_frame", "1", static_cast<double>(first->frame)});
+  add("replay.first_differing_frame", static_cast<double>(first->frame));
+  std::erase_if(statistics, [](const Statistic& s) { return s.name.starts_with("accuracy."); });
 }
 
-/// @param ate_holds  whether the algorithm computed what is on record
-void add_statistics(const RunResult& run, bool ate_holds, std::vector<Figure>& figures) {
-  const RunFigures known = figures_of(run);
-  const auto is_of_accuracy = [](std::string_view name) { return name.starts_with("accuracy."); };
-  for (const Objective& o : kObjectives)
-    if (const auto value = known.value(o.statistic);
-        value && (ate_holds || !is_of_accuracy(o.statistic)))
-      figures.push_back({o.figure, o.unit, *value * o.factor});
-  for (const Statistic& s : known.statistics)
-    if (s.value && is_kept(s.name) && (ate_holds || !is_of_accuracy(s.name)))
-      figures.push_back({s.name, s.unit, *s.value});
+RunRecord record_of(const RunResult& run) {
+  RunRecord record = reduced({figures_of(run)}, Level::figures);
+  std::erase_if(record.statistics, [](const Statistic& s) { return !s.value; });
+  return record;
 }
 
-Outcome computed(const ResolvedPoint& point, KnownRuns& known) {
+RunRecord computed(const ResolvedPoint& point, KnownRuns& known) {
   const auto progress = [](const Progress&) { throw_if_interrupted(); };
-  Outcome outcome;
-  if (point.trace == nullptr) {
-    add_statistics(simulate(point.request, progress), true, outcome.figures);
-    return outcome;
-  }
+  if (point.trace == nullptr) return record_of(simulate(point.request, progress));
   const Replay replayed = known.replay(*point.trace, point.request, progress);
-  add_comparison(replayed, outcome.figures);
-  add_statistics(replayed.run,
-                 std::all_of(replayed.frames.begin(), replayed.frames.end(),
-                             [](const FrameComparison& f) { return f.computes_the_same(); }),
-                 outcome.figures);
-  return outcome;
+  RunRecord record = record_of(replayed.run);
+  add_comparison(replayed, record.statistics);
+  return record;
 }
 
 namespace fs = std::filesystem;
@@ -140,7 +123,7 @@ std::vector<StageName> stages_of(const ResolvedPoint& point) {
 void add_missing(RunRecord& record) {
   const auto add = [&](const FigurePhrase& phrase, const std::string& name) {
     if (record.find(name) == nullptr)
-      record.statistics.push_back({name, std::string(phrase.unit), "", std::nullopt});
+      record.statistics.push_back({.name = name, .unit = std::string(phrase.unit)});
   };
   for (const FigurePhrase& phrase : run_phrases()) add(phrase, std::string(phrase.statistic));
   for (const StageName& stage : record.stages)
@@ -166,8 +149,7 @@ std::optional<Miss> first_miss(const CheckResult& result) {
 
 /// The record of a finished point: what sections and limits of a budget ask for.
 RunRecord point_record(const ResolvedPoint& point, const SweepRow& settings, int number,
-                       const Outcome& outcome) {
-  RunRecord record;
+                       RunRecord record) {
   record.name = fmt::format("point {}", number);
   const auto platform = settings.find("platform");
   const bool recorded = point.trace != nullptr;
@@ -178,19 +160,19 @@ RunRecord point_record(const ResolvedPoint& point, const SweepRow& settings, int
   record.facts.overrides = point.overrides;
   record.facts.cores = point.request.cores;
   record.stages = stages_of(point);
-  for (const Figure& figure : outcome.figures)
-    record.statistics.push_back({figure.name, figure.unit, "", figure.value});
   add_missing(record);
   return record;
 }
 
 }  // namespace
 
-Outcome run_point(const ResolvedPoint& point, KnownRuns& known) {
+RunRecord run_point(const ResolvedPoint& point, KnownRuns& known) {
   try {
     return computed(point, known);
   } catch (const InputError& error) {
-    return {error.what(), {}};
+    RunRecord record;
+    record.failure = error.what();
+    return record;
   }
 }
 
@@ -207,7 +189,7 @@ std::optional<PointName> point_name(const std::string& text) {
   return name;
 }
 
-RunRecord read_point(const PointName& name, const RecordOptions& options, RunFiles* files) {
+RunFolder read_point(const PointName& name, const RecordOptions& options) {
   const SweepStore store{fs::path(name.sweep)};
   const std::size_t i = index_of(name, store.planned());
   const std::optional<fs::path> file = store.place();
@@ -218,13 +200,13 @@ RunRecord read_point(const PointName& name, const RecordOptions& options, RunFil
   if (!store.holds(points)) refuse(name, "what the plan names has changed since the sweep");
   const SweepRow settings = points[i].settings;
   const ResolvedPoint point = resolve(swept.plan, settings, swept.inputs, name.text());
-  return computed_record(
+  return computed_run(
       name.text(), point.request, manifest_of(point, settings),
       [&](const RunRequest& request, const ProgressCallback& progress) {
         return point.trace != nullptr ? replay(*point.trace, request, progress).run
                                       : simulate(request, progress);
       },
-      options.quiet, files);
+      options.quiet);
 }
 
 SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
@@ -236,14 +218,14 @@ SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
   for (std::size_t i = 0; i < points.size(); ++i) {
     throw_if_interrupted();
     const int number = static_cast<int>(i) + 1;
-    const std::optional<Outcome> outcome = store.result_of(number);
+    std::optional<RunRecord> outcome = store.result_of(number);
     if (!outcome) continue;
     ++check.held;
     std::optional<Miss> miss;
     if (outcome->failure.empty()) {
       const SweepRow settings = points[i].settings;
-      RunRecord record =
-          point_record(resolve(plan, settings, inputs, plan.file), settings, number, *outcome);
+      RunRecord record = point_record(resolve(plan, settings, inputs, plan.file), settings, number,
+                                      std::move(*outcome));
       if (i == 0) first = record;
       miss = first_miss(check_budget(record, budget, first ? &*first : nullptr));
     } else {

@@ -16,7 +16,8 @@
 #include "platform_models/loader/value.h"
 #include "sim/outputs/output_folder.h"
 #include "tools/app/cli/terminal.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/record/record.h"
+#include "tools/app/run/record_source.h"
 #include "tools/app/run/yaml_map.h"
 #include "tools/app/study/engine.h"
 #include "traces/datasets/dataset.h"
@@ -314,7 +315,7 @@ inline constexpr std::array kObjectives{
 
 /// Computes the point, or times its recorded work. A chip too small for the work is a failure.
 /// @throws Interrupted
-Outcome run_point(const ResolvedPoint& point, KnownRuns& known);
+RunRecord run_point(const ResolvedPoint& point, KnownRuns& known);
 
 // A point of a finished sweep as a run that can be compared: "swept:3". A sweep keeps figures only,
 // not where cycles went, so the point is replayed or computed again, as the sweep's plan says.
@@ -332,10 +333,8 @@ struct PointName {
 std::optional<PointName> point_name(const std::string& text);
 
 /// @param memory,quiet  of the options; the chip is the point's
-/// @param files         gets what a run folder would hold; may be null
 /// @throws InputError for a number that the sweep does not have, for points whose plan, trace or
 ///         data are no longer what they were, and as the run does
-RunRecord read_point(const PointName& name, const RecordOptions& options,
-                     RunFiles* files = nullptr);
+RunFolder read_point(const PointName& name, const RecordOptions& options);
 
 }  // namespace leviosim::tools

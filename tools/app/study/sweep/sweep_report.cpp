@@ -15,7 +15,7 @@
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/run/known_runs.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/engine.h"
@@ -314,9 +314,9 @@ Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, Swe
   };
   // In the order of the plan, so that the file has the same bytes however many run at a time. Those
   // that wait for one before them are in the cache if the program is killed.
-  std::map<std::size_t, Outcome> waiting;
+  std::map<std::size_t, RunRecord> waiting;
   std::size_t next = 0;
-  batch.take = [&](std::size_t i, const Outcome& outcome) {
+  batch.take = [&](std::size_t i, const RunRecord& outcome) {
     waiting.emplace(i, outcome);
     for (auto first = waiting.begin(); first != waiting.end() && first->first == next; ++next) {
       store.put(static_cast<int>(open[next]) + 1, first->second);

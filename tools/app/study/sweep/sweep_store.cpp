@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 
 #include "platform_models/loader/schema.h"
 #include "sim/base/check.h"
@@ -14,7 +15,7 @@
 #include "sim/base/sha256.h"
 #include "sim/outputs/growing_file.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/report/json_reader.h"
+#include "tools/app/record/json_reader.h"
 
 namespace leviosim::tools {
 namespace {
@@ -24,8 +25,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kAboutBegin = "{\"sweep\":\"leviosim sweep ";
 /// Publishing a table of a million points takes some seconds under the lock.
 constexpr std::chrono::seconds kPatience{60};
-constexpr JsonLimits kLineLimits{
-    .bytes = std::size_t{4} << 20, .depth = 4, .values = 100'000, .members = 32};
+constexpr JsonLimits kLineLimits{.bytes = std::size_t{4} << 20, .depth = 8, .values = 100'000};
 
 fs::path made(const fs::path& folder) {
   std::error_code error;
@@ -55,11 +55,6 @@ std::string digest_of_keys(const std::vector<SweepPoint>& points) {
 /// Relative, so that a sweep and its plan can be moved together.
 std::string place_of(const fs::path& plan, const fs::path& folder) {
   return fs::proximate(plan, folder).string();
-}
-
-bool is_objective(const std::string& name) {
-  return std::any_of(kObjectives.begin(), kObjectives.end(),
-                     [&](const Objective& o) { return o.figure == name; });
 }
 
 std::string string_of(const Json& json) { return json.get<std::string>(); }
@@ -98,7 +93,7 @@ std::string SweepStore::line_of(const About& about) {
   return json_text(line) + '\n';
 }
 
-std::string SweepStore::line_of(int point, const Outcome& result) const {
+std::string SweepStore::line_of(int point, const RunRecord& result) const {
   const SweepPoint& planned = (*planned_points_)[static_cast<std::size_t>(point) - 1];
   Json line;
   line["point"] = point;
@@ -106,7 +101,7 @@ std::string SweepStore::line_of(int point, const Outcome& result) const {
   line["set"] = Json::array();
   for (const PointParameter& parameter : planned.parameters)
     line["set"].push_back({parameter.name, parameter.text});
-  add_outcome(result, line);
+  line["record"] = record_json(result);
   return json_text(line) + '\n';
 }
 
@@ -173,11 +168,7 @@ void SweepStore::add_point(const Json& line, std::string_view text) {
     throw InputError(
         fmt::format("{}: has a point {}; expected 1 to {}", file_.string(), number, about_.points));
   const int point = static_cast<int>(number);
-  Kept kept{.line = std::string(text) + '\n',
-            .settings = {},
-            .failure = {},
-            .protocol = {},
-            .figures = {}};
+  Kept kept{.line = std::string(text) + '\n', .settings = {}, .failure = {}, .figures = {}};
   const auto known = points_.find(point);
   if (known != points_.end()) {
     if (known->second.line == kept.line) return;
@@ -192,11 +183,10 @@ void SweepStore::add_point(const Json& line, std::string_view text) {
   if (kept.settings.size() != about_.parameters.size())
     throw InputError(fmt::format("{}: point {} sets {} parameters; expected {}", file_.string(),
                                  point, kept.settings.size(), about_.parameters.size()));
-  const Outcome outcome = outcome_of(line);
-  kept.failure = outcome.failure;
-  kept.protocol = outcome.protocol;
-  for (const Figure& f : outcome.figures)
-    kept.figures.emplace_back(figure(f.name, f.unit), f.value);
+  const RunRecord record = record_of_json(file_.string(), line.at("record"), Level::figures);
+  kept.failure = record.failure;
+  for (const Statistic& s : record.statistics)
+    if (s.value) kept.figures.emplace_back(figure(s.name, s.unit), *s.value);
   points_.emplace(point, std::move(kept));
 }
 
@@ -249,17 +239,19 @@ std::set<int> SweepStore::finished() const {
   return numbers;
 }
 
-void SweepStore::put(int point, const Outcome& result) {
+void SweepStore::put(int point, const RunRecord& result) {
   append([&] { return points_.count(point) > 0 ? std::string() : line_of(point, result); });
 }
 
-std::optional<Outcome> SweepStore::result_of(int point) const {
+std::optional<RunRecord> SweepStore::result_of(int point) const {
   const auto kept = points_.find(point);
   if (kept == points_.end()) return std::nullopt;
-  Outcome outcome{kept->second.failure, {}, kept->second.protocol};
+  RunRecord record;
+  record.failure = kept->second.failure;
   for (const auto& [place, value] : kept->second.figures)
-    outcome.figures.push_back({figure_names_[place].first, figure_names_[place].second, value});
-  return outcome;
+    record.statistics.push_back(
+        {.name = figure_names_[place].first, .unit = figure_names_[place].second, .value = value});
+  return record;
 }
 
 void SweepStore::merge(const SweepStore& other) {
@@ -293,7 +285,7 @@ void SweepStore::copy_plan_to(const fs::path& folder) const {
 std::vector<SweepOutcome> SweepStore::outcomes() const {
   std::array<std::size_t, kObjectives.size()> places{};
   for (std::size_t k = 0; k < kObjectives.size(); ++k) {
-    const auto place = figure_places_.find(kObjectives[k].figure);
+    const auto place = figure_places_.find(kObjectives[k].statistic);
     places[k] = place == figure_places_.end() ? figure_names_.size() : place->second;
   }
   std::vector<SweepOutcome> all;
@@ -303,7 +295,7 @@ std::vector<SweepOutcome> SweepStore::outcomes() const {
     outcome.failure = kept.failure;
     for (const auto& [place, value] : kept.figures)
       for (std::size_t k = 0; k < kObjectives.size(); ++k)
-        if (places[k] == place) outcome.objectives[k] = value;
+        if (places[k] == place) outcome.objectives[k] = value * kObjectives[k].factor;
   }
   return all;
 }
@@ -318,29 +310,28 @@ std::string SweepStore::settings_of(int point) const {
 }
 
 std::string SweepStore::csv() const {
-  std::vector<std::string> columns;  // of figures: objectives, then the others by name
-  for (const auto& [name, unit] : figure_names_)
-    if (!is_objective(name)) columns.push_back(name);
-  std::sort(columns.begin(), columns.end());
-  std::vector<std::string> objectives;
-  for (const Objective& o : kObjectives) objectives.emplace_back(o.figure);
-  columns.insert(columns.begin(), objectives.begin(), objectives.end());
-  std::unordered_map<std::string, std::size_t> column_of;
-  for (std::size_t c = 0; c < columns.size(); ++c) column_of.emplace(columns[c], c);
-
+  std::vector<std::size_t> order(figure_names_.size());  // of figures, by name
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return figure_names_[a].first < figure_names_[b].first;
+  });
   std::vector<std::string> cells{"point", "status"};
   cells.insert(cells.end(), about_.parameters.begin(), about_.parameters.end());
-  cells.insert(cells.end(), columns.begin(), columns.end());
+  for (const Objective& o : kObjectives) cells.emplace_back(o.figure);
+  for (const std::size_t place : order) cells.push_back(figure_names_[place].first);
   cells.emplace_back("failure");
   std::string text = csv_line(cells);
+  const std::vector<SweepOutcome> all = outcomes();
+  auto outcome = all.begin();
   for (const auto& [point, kept] : points_) {
     throw_if_interrupted();
     cells = {std::to_string(point), kept.failure.empty() ? "done" : "failed"};
     for (const auto& [name, value] : kept.settings) cells.emplace_back(value);
-    std::vector<std::string> values(columns.size());
-    for (const auto& [place, value] : kept.figures)
-      values[column_of.at(figure_names_[place].first)] = platform::number_text(value);
-    cells.insert(cells.end(), values.begin(), values.end());
+    for (const std::optional<double>& value : (outcome++)->objectives)
+      cells.push_back(value ? platform::number_text(*value) : "");
+    std::vector<std::string> values(figure_names_.size());
+    for (const auto& [place, value] : kept.figures) values[place] = platform::number_text(value);
+    for (const std::size_t place : order) cells.push_back(std::move(values[place]));
     cells.emplace_back(kept.failure);
     text += csv_line(cells);
   }

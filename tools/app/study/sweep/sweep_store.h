@@ -1,8 +1,7 @@
 // Results of a sweep in one file of lines, points.jsonl: what the sweep is, then a point a line.
 //
-//   {"sweep":"leviosim sweep 3","points":2,"keys":"8f3c…","parameters":[…],"plan":"…",…}
-//   {"point":1,"key":"41aa…","set":[[name, value],…],"failure":"","figures":[[name, unit,
-//   value],…]}
+//   {"sweep":"leviosim sweep 4","points":2,"keys":"8f3c…","parameters":[…],"plan":"…",…}
+//   {"point":1,"key":"41aa…","set":[[name, value],…],"record":{…}}     record/record.h
 //
 // A point is added as soon as it and those before it are finished, all or nothing: a process that
 // dies leaves whole points only, and a last line that lacks its end does not count. Several
@@ -38,7 +37,7 @@ inline constexpr const char* kSweepFile = "points.jsonl";
 inline constexpr const char* kSweepCsv = "sweep.csv";
 /// Of earlier versions, and not read any more.
 inline constexpr const char* kOldSweepFile = "sweep.sqlite";
-inline constexpr const char* kSweepFormat = "leviosim sweep 3";
+inline constexpr const char* kSweepFormat = "leviosim sweep 4";
 
 /// A finished point as the report needs it.
 struct SweepOutcome {
@@ -58,7 +57,7 @@ class SweepStore {
   explicit SweepStore(const std::filesystem::path& folder);
 
   std::set<int> finished() const;
-  void put(int point, const Outcome& result);
+  void put(int point, const RunRecord& result);
 
   /// Takes over all that another has finished. @throws InputError if it is of another sweep, or if
   /// both have a point with different results
@@ -67,7 +66,7 @@ class SweepStore {
   void copy_plan_to(const std::filesystem::path& folder) const;
 
   /// What is kept of a point; nothing of one that is not finished.
-  std::optional<Outcome> result_of(int point) const;
+  std::optional<RunRecord> result_of(int point) const;
   /// In the order of their numbers.
   std::vector<SweepOutcome> outcomes() const;
   /// That the points set, in the order of the plan.
@@ -109,12 +108,11 @@ class SweepStore {
     std::string line;  ///< with its end
     std::vector<std::pair<std::string, std::string>> settings;
     std::string failure;
-    std::string protocol;
     std::vector<std::pair<std::size_t, double>> figures;  ///< place in figure_names_, value
   };
 
   static std::string line_of(const About& about);
-  std::string line_of(int point, const Outcome& result) const;
+  std::string line_of(int point, const RunRecord& result) const;
   void load(base::OpenedFile file);
   void add_line(std::string_view line, std::uint64_t begin);
   void add_about(const Json& line);

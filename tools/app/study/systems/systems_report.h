@@ -9,7 +9,7 @@
 
 #include "sim/energy/estimate.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/engine.h"
 #include "tools/app/table/table_files.h"

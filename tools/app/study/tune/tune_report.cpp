@@ -12,9 +12,9 @@
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/record.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
@@ -324,7 +324,7 @@ ChosenRun run_again(const TunePlan& plan, const TunePoint& point) {
     if (i == 0) request.time_bands = TimeBandsOf::team;  // as in the folder of a run
     RunResult result = simulate(request, [](const Progress&) { throw_if_interrupted(); });
     const RunOutcome outcome = outcome_of(result, plan.sequence.truth, plan.measure);
-    if (to_text(figures_of(outcome)) != to_text(figures_of(point.outcomes[i])))
+    if (record_json(record_of(outcome)) != record_json(record_of(point.outcomes[i])))
       throw InputError(
           "tune: run again, the chosen point gave other figures than were found in the cache of "
           "finished runs; remove it, or choose another with --cache");
@@ -343,9 +343,11 @@ void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
   const std::vector<Choice> all = choices(plan, points);
   plan.out->write("runs.csv", csv_text(tune_rows(plan, points)));
   if (again)
-    write_run_folder(*plan.out, again->result,
-                     manifest_of(plan, *chosen(all), *again, command_line),
-                     platform::to_yaml(again->request.platform), "chosen/");
+    write_run_folder(
+        *plan.out,
+        run_folder("chosen", again->result, manifest_of(plan, *chosen(all), *again, command_line),
+                   platform::to_yaml(again->request.platform)),
+        "chosen/");
   plan.out->write("manifest.json", json_text(tune_manifest(plan, all, command_line), 2) + '\n');
 }
 
@@ -356,9 +358,8 @@ void hold(const Gate& gate, const TunePlan& plan, const TunePoint* best,
     print(Printout("no point to check against the budget\n"));
     throw LimitNotMet();
   }
-  print_check(
-      gate.check(make_record("the chosen point", manifest_of(plan, *best, *again, command_line),
-                             again->result, cycle_parts(again->result))));
+  print_check(gate.check(make_record(
+      "the chosen point", manifest_of(plan, *best, *again, command_line), again->result)));
 }
 
 void run(const CLI::App& command, const GatedTuneWords& words, const Words& command_line) {

@@ -10,7 +10,7 @@
 #include "sim/outputs/output_folder.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/engine.h"

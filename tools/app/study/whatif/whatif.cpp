@@ -16,7 +16,7 @@
 #include "sim/work/arena.h"
 #include "sim/work/offload_regions.h"
 #include "tools/app/cli/host.h"
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/trace_source.h"
 #include "traces/work_traces/work_trace.h"
@@ -70,7 +70,7 @@ VariantResult timed(const Variant& variant, const ResolvedPoint& point, KnownRun
   result.period_ms = static_cast<double>(run.frame_period_ns) * 1e-6;
   if (const std::optional<FrameTimes> times = frame_times(run)) result.times = *times;
   const RunFigures figures = figures_of(run);
-  result.verdicts = verdicts(figures);
+  result.verdicts = figures.verdicts;
   result.unused = unused_accelerators(figures);
   result.l1_peak = figures.value("memory.l1.peak").value_or(0);
   take_costs(result, run);

@@ -11,8 +11,9 @@
 
 #include "tools/app/cli/command_line.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/comparison/main_causes.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/record/record.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
 #include "tools/app/run/known_runs.h"

@@ -12,9 +12,10 @@
 #include "sim/base/input_file.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/comparison/run_record.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/record.h"
+#include "tools/app/record/statistic_list.h"
+#include "tools/app/run/record_source.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/study/study.h"
@@ -142,7 +143,7 @@ Asked asked_of(const std::string& run, SweepInputs& inputs, const Words& words,
                     run, kWorkTraceFile));
   const traces::WorkTrace& trace = *inputs.trace(run, {run}).work;
   if (!base::is_folder(run)) return {run, {}};
-  const SweepRow again = settings_of(trace, read_run_folder(run).facts.workload);
+  const SweepRow again = settings_of(trace, read_run_folder(run, false).record.facts.workload);
   const bool is_there = trace.info().data == "synthetic" || base::exists(trace.info().data);
   return {run, is_there ? again : SweepRow()};
 }

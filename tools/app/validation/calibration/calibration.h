@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "sim/chip/config.h"
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/record/statistic_list.h"
 #include "tools/app/validation/frame_log.h"
 
 namespace leviosim::tools {

@@ -1,21 +1,21 @@
-#include "tools/app/report/statistics.h"
+#include "tools/app/record/statistics.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "sim/energy/area.h"
 #include "sim/work/counts.h"
-#include "tools/app/report/run_summary.h"
 #include "tools/app/result/summary.h"
-#include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {
 namespace {
 
+using traces::ErrorSummary;
+using traces::Evaluation;
+using traces::RelativeErrors;
+
 void add_run(StatisticList& list, const RunResult& run) {
-  list.add("run.profile", "text", "profile of the workload", run.profile);
   list.add("run.image_width", "px", "width of the image that the workload gets", run.image_width);
   list.add("run.image_height", "px", "height of that image", run.image_height);
   list.add("run.frame_period", "ns", "between two camera frames", run.frame_period_ns);
@@ -100,8 +100,6 @@ void add_code(StatisticList& list, const std::string& path, const StageResult& s
 void add_stage(StatisticList& list, const RunResult& run, const StageResult& stage) {
   const std::string path = fmt::format("stages.{}.", key_of(stage.name));
   list.add(path + "calls", "1", fmt::format("executions, one per {}", stage.unit), stage.calls);
-  list.add(path + "runs_on", "text", "cluster or fabric controller",
-           stage.on_controller ? "controller" : "cluster");
   add_cycles(list, path, run, stage);
   add_breakdown(list, path, run, stage);
   add_served(list, path, stage);
@@ -235,8 +233,6 @@ void add_camera(StatisticList& list, const RunResult& run) {
   const std::optional<CameraFigures> figures = camera_figures(run);
   if (!figures) return;
   list.add("camera.rate", "1/s", "frames that the camera delivers", run.camera->fps);
-  list.add("camera.deadline", "text", "what becomes of frames that find the front end busy",
-           info_of(run.camera->deadline).name);
   list.add("camera.arrived", "1", "frames that the camera delivered", figures->arrived);
   list.add("camera.processed", "1", "of these, frames that the front end took", figures->processed);
   list.add("camera.dropped", "1", "of these, frames that were lost", figures->dropped);
@@ -344,46 +340,69 @@ StatisticList list_of(const RunResult& run) {
   return list;
 }
 
-/// In words.
-void add_verdicts(StatisticList& list, const Verdicts& verdicts) {
-  for (const RunVerdict& verdict : verdicts.list) {
-    std::vector<std::string_view> words;
-    for (const VerdictWord& w : verdict_words())
-      if (w.about == verdict.about) words.push_back(w.word);
-    const std::string name = fmt::format("verdict.{}", verdict.about);
-    list.add(name, "text", fmt::format("one of: {}", fmt::join(words, ", ")), verdict.word());
-    list.add(name + ".reason", "text", "why", verdict.reason());
-  }
-}
+}  // namespace
 
-/// @param list  of the run
-RunFigures figures_of(const RunResult& run, const StatisticList& list) {
+RunFigures figures_of(const RunResult& run) {
   RunFigures figures;
   if (run.timed)
     for (const StageResult& stage : run.stages)
       figures.stages.push_back({stage.name, key_of(stage.name), stage.on_controller});
-  for (const StatisticRow& row : list.rows()) {
-    if (row.value.is_string()) continue;
-    Statistic statistic{row.name, row.unit, row.description, {}};
-    if (row.value.is_number()) statistic.value = row.value.get<double>();
-    figures.statistics.push_back(std::move(statistic));
-  }
+  figures.statistics = list_of(run).take();
   complete(figures, recorded_frames(run));
   return figures;
 }
 
-}  // namespace
-
-RunFigures figures_of(const RunResult& run) { return figures_of(run, list_of(run)); }
-
-Json statistics(const RunResult& run) {
-  StatisticList list = list_of(run);
-  add_verdicts(list, verdicts(figures_of(run, list)));
-  return statistics_document(list.json());
+void add_ate(StatisticList& list, const Evaluation& evaluation,
+             const std::optional<traces::AttitudeErrors>& attitude) {
+  const auto add = [&](const char* name, const char* unit, const char* description, Json value) {
+    list.add(std::string("accuracy.") + name, unit, description, std::move(value),
+             evaluation.protocol);
+  };
+  const ErrorSummary& t = evaluation.translation;
+  add("ate.rmse", "m", "absolute trajectory error, root mean square", rounded(t.rmse));
+  add("ate.mean", "m", "absolute trajectory error, mean", rounded(t.mean));
+  add("ate.median", "m", "absolute trajectory error, median", rounded(t.median));
+  add("ate.worst", "m", "absolute trajectory error, worst", rounded(t.max));
+  if (evaluation.located_rmse_m)
+    add("ate.located", "m", "absolute trajectory error without poses that are guesses, RMS",
+        rounded(*evaluation.located_rmse_m));
+  if (attitude) {
+    add("tilt.rmse", "deg", "of the vertical, attitudes best aligned, root mean square",
+        rounded(attitude->tilt_rmse_deg));
+    add("heading.rmse", "deg", "about the vertical, attitudes best aligned, root mean square",
+        rounded(attitude->heading_rmse_deg));
+  }
+  add("matched", "1", "poses matched with the ground truth", evaluation.matched);
+  add("completion", "1", "how much of the flight has an estimate", rounded(evaluation.completion));
+  add("truth_length", "m", "of the true path", rounded(evaluation.path_length_m));
+  add("size_ratio", "1",
+      "scale: RMS distance of the estimated positions from their mean, over that of the true ones",
+      evaluation.size_ratio ? rounded(*evaluation.size_ratio) : Json());
 }
 
-std::string statistics_text(const RunResult& run) {
-  return statistics_document_text(statistics(run));
+std::string relative_protocol(const Evaluation& evaluation) {
+  return "from every matched pose to the first that is the length farther along the true path; " +
+         evaluation.protocol;
+}
+
+void add_relative(StatisticList& list, const Evaluation& evaluation, const RelativeErrors& errors) {
+  const std::string path = fmt::format("accuracy.relative.{:g}m.", errors.length_m);
+  const std::string protocol = relative_protocol(evaluation);
+  list.add(path + "count", "1", "sub-trajectories of this length", errors.count, protocol);
+  const auto add = [&](const std::string& kind, const char* unit, const ErrorSummary& summary) {
+    struct Figure {
+      const char* name;
+      const char* description;
+      double value;
+    };
+    for (const Figure& f :
+         {Figure{"rmse", "root mean square", summary.rmse}, Figure{"mean", "mean", summary.mean},
+          Figure{"median", "median", summary.median}, Figure{"worst", "worst", summary.max}})
+      list.add(path + kind + '.' + f.name, unit, "relative " + kind + " error, " + f.description,
+               errors.count > 0 ? rounded(f.value) : Json(nullptr), protocol);
+  };
+  add("translation", "%", errors.translation);
+  add("rotation", "deg/m", errors.rotation_deg_per_m);
 }
 
 }  // namespace leviosim::tools

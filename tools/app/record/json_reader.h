@@ -1,6 +1,6 @@
-// The one reader of JSON that comes from outside: manifests, statistics, baselines, histories,
-// points of sweeps, cached outcomes. It is bounded in bytes, depth, values and members of an
-// object, whatever the text says, and answers signals while it reads.
+// The one reader of JSON that comes from outside: records of runs in all their files, and
+// manifests. It is bounded in bytes, depth and values, whatever
+// the text says, and answers signals while it reads. Of members of one name, the first counts.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "tools/app/report/statistic_list.h"
+#include "tools/app/table/json.h"
 
 namespace leviosim::tools {
 
@@ -17,7 +17,6 @@ struct JsonLimits {
   std::size_t bytes = std::size_t{64} << 20;
   std::size_t depth = 64;          ///< of arrays and objects in each other
   std::size_t values = 1'000'000;  ///< of all kinds; each takes some 70 bytes of memory
-  std::size_t members = 4096;      ///< of one object: a name is looked for among those before it
 };
 
 /// @param where  of the text, for messages

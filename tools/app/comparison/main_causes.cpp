@@ -1,4 +1,4 @@
-#include "tools/app/comparison/run_record.h"
+#include "tools/app/comparison/main_causes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,53 +11,10 @@
 #include <tuple>
 #include <utility>
 
-#include "sim/base/csv.h"
 #include "sim/chip/account.h"
-#include "tools/app/comparison/comparison.h"
 
 namespace leviosim::tools {
 namespace {
-
-/// As the file has it, so that a run and its folder say the same.
-double rounded_part(double value) { return std::round(value * 1e3) / 1e3; }
-
-template <class Keep>
-StageParts folded_unless(const StageParts& stage, Keep&& keep) {
-  StageParts result{stage.stage, stage.on_controller, stage.cycles, {}};
-  CyclePart other{"", std::string(kOtherParts), "", 0, 0};
-  for (const CyclePart& part : stage.parts) {
-    if (part.mechanism != kOtherParts && keep(part))
-      result.parts.push_back(part);
-    else
-      other.cycles += part.cycles;
-  }
-  other.cycles = rounded_part(other.cycles);
-  if (other.cycles != 0) result.parts.push_back(other);
-  return result;
-}
-
-/// @param share  cycles of the stage in a cycle of the fork's account
-void add_fork(std::vector<CyclePart>& parts, const sim::ForkAccount& fork, double share) {
-  const auto add = [&](std::string_view mechanism, std::string_view operation, double cycles,
-                       double count) {
-    cycles = rounded_part(cycles * share);
-    if (cycles != 0 || count != 0)
-      parts.push_back({fork.name, std::string(mechanism), std::string(operation), cycles, count});
-  };
-  for (std::size_t i = 0; i < sim::kOperationCount; ++i) {
-    const sim::OperationAccount& operation = fork.operations[i];
-    const bool costs = operation.cycles.total() != 0;
-    for (const sim::MechanismInfo& info : sim::kMechanisms) {
-      if (sim::index(info.mechanism) >= sim::kLoneMechanismCount) continue;
-      const double cycles = operation.cycles[info.mechanism];
-      if (costs ? cycles != 0 : info.mechanism == sim::Mechanism::Issue)
-        add(info.key, sim::operation_name(i), cycles, operation.count);
-    }
-  }
-  for (const sim::MechanismInfo& info : sim::kMechanisms)
-    if (sim::index(info.mechanism) >= sim::kLoneMechanismCount)
-      add(info.key, "", fork.cycles[info.mechanism], 0);
-}
 
 /// Mechanisms that wait for the same, or stand in the same column of losses, are one cause.
 std::string name_of_mechanism(std::string_view mechanism) {
@@ -200,84 +157,6 @@ class CauseSum {
 };
 
 }  // namespace
-
-std::string_view describe_mechanism(std::string_view key) {
-  if (key == kOtherParts) return "small parts of a baseline";
-  for (const sim::MechanismInfo& info : sim::kMechanisms)
-    if (info.key == key) return info.meaning;
-  return {};
-}
-
-std::vector<StageParts> cycle_parts(const RunResult& run) {
-  std::vector<StageParts> result;
-  for (const StageResult& stage : run.stages) {
-    if (stage.calls == 0) continue;
-    StageParts& parts = result.emplace_back(StageParts{
-        stage.name, stage.on_controller, static_cast<double>(stage.parallel.count()), {}});
-    for (const sim::ForkAccount& fork : stage.account.forks)
-      add_fork(parts.parts, fork, fork.weight / (stage.on_controller ? 1 : run.cores));
-  }
-  if (const auto cycles = static_cast<double>(run.offload.count()); cycles != 0)
-    result.push_back({kOffloadStage, false, cycles, {{"", "offload", "", cycles, 0}}});
-  return result;
-}
-
-StageParts folded(const StageParts& stage, double least_share) {
-  return folded_unless(stage, [&](const CyclePart& part) {
-    return std::abs(part.cycles) >= least_share * stage.cycles;
-  });
-}
-
-StageParts folded_like(const StageParts& stage, const StageParts& other) {
-  return folded_unless(stage, [&](const CyclePart& part) {
-    return std::any_of(other.parts.begin(), other.parts.end(), [&](const CyclePart& p) {
-      return p.where == part.where && p.mechanism == part.mechanism &&
-             p.operation == part.operation;
-    });
-  });
-}
-
-std::string cycles_csv(const std::vector<StageParts>& stages) {
-  std::string text = "stage,runs_on,where,mechanism,operation,cycles,count\n";
-  for (const StageParts& stage : stages) {
-    const char* runs_on = stage.on_controller ? "controller" : "cluster";
-    text += fmt::format("{},{},,total,,{:.3f},0\n", stage.stage, runs_on, stage.cycles);
-    for (const CyclePart& part : stage.parts)
-      text += fmt::format("{},{},{},{},{},{:.3f},{:.0f}\n", stage.stage, runs_on, part.where,
-                          part.mechanism, part.operation, part.cycles, part.count);
-  }
-  return text;
-}
-
-std::vector<StageParts> parse_cycles(const std::filesystem::path& file, std::string text) {
-  enum { kStage, kRunsOn, kWhere, kMechanism, kOperation, kCycles, kCount };
-  base::CsvReader reader(file, base::Separator::comma,
-                         {"stage", "runs_on", "where", "mechanism", "operation", "cycles", "count"},
-                         std::move(text));
-  std::vector<StageParts> stages;
-  bool is_header = true;
-  while (const base::CsvRow* row = reader.next()) {
-    if (std::exchange(is_header, false)) {
-      if (row->text(kStage) != "stage") row->fail(kStage, "no title; expected stage");
-      continue;
-    }
-    const std::string mechanism(row->text(kMechanism));
-    if (mechanism == "total") {
-      stages.push_back({std::string(row->text(kStage)),
-                        row->text(kRunsOn) == "controller",
-                        row->number(kCycles),
-                        {}});
-      continue;
-    }
-    if (describe_mechanism(mechanism).empty()) row->fail(kMechanism, "no mechanism");
-    if (stages.empty() || stages.back().stage != row->text(kStage))
-      row->fail(kStage, "a stage without its total before it");
-    stages.back().parts.push_back({std::string(row->text(kWhere)), mechanism,
-                                   std::string(row->text(kOperation)), row->number(kCycles),
-                                   row->number(kCount)});
-  }
-  return stages;
-}
 
 TimedParts timed_parts(const RunRecord& run) {
   return {run.cycles, run.facts.cores,

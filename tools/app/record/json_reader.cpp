@@ -1,4 +1,4 @@
-#include "tools/app/report/json_reader.h"
+#include "tools/app/record/json_reader.h"
 
 #include <fmt/format.h>
 
@@ -61,11 +61,8 @@ class BoundedBuilder : public nlohmann::json_sax<Json> {
       in.push_back(std::move(value));
       return &in.back();
     }
-    if (in.size() >= limits_.members) {
-      refuse("members in an object", limits_.members);
-      return nullptr;
-    }
-    return &(in[name_] = std::move(value));
+    add_member(in, name_, std::move(value));
+    return &in.get_ref<Json::object_t&>().back().second;
   }
   bool open(Json empty) {
     if (open_.size() >= limits_.depth) return refuse("levels of arrays and objects", limits_.depth);
