@@ -11,6 +11,7 @@
 
 #include "sim/base/text.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/cli/terminal.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/result/summary.h"
@@ -145,7 +146,7 @@ std::string what_ifs(const std::string& trace, ProgressLine::Style style) {
   return whatif_bars(what_if.results(variants, {.noun = "variant", .progress = style}));
 }
 
-/// "levio takes 37.1 ms and 1.53 mJ for a frame, 0 of 400 late".
+/// "levio takes 37.1 ms and 1.53 mJ".
 std::string frame_of(const RunResult& run) {
   const std::optional<FrameTimes> times = frame_times(run);
   const std::optional<RunEnergy> of_run = energy_of(run);
@@ -163,11 +164,14 @@ std::string demo_verdict(const RunResult& a, const RunResult& b) {
                          [&](const FrameResult& f) { return is_late(f, run); });
   };
   const auto number = late(a) + late(b);
-  return fmt::format(
-      "verdict: {}: {} a frame on {} cores, {}; {} late\n",
-      number == 0 ? "fits" : "fits on average", frame_of(a), a.cores, frame_of(b),
-      number == 0 ? std::string("none is")
-                  : fmt::format("{} of {} frames are", number, a.frames.size() + b.frames.size()));
+  const std::string late_text = number == 0 ? std::string("none is late")
+                                            : fmt::format("{} of {} frames are late", number,
+                                                          a.frames.size() + b.frames.size());
+  return wrap_words(fmt::format("verdict: {}: {} a frame on {} cores, {}; {}",
+                                number == 0 ? "fits" : "fits on average", frame_of(a), a.cores,
+                                frame_of(b), late_text),
+                    2, kScreenColumns) +
+         '\n';
 }
 
 std::string screen(const Flown& levio, const Flown& next, const std::string& what_ifs,

@@ -3,7 +3,6 @@
 #include <jerror.h>
 
 #include <array>
-#include <csetjmp>
 #include <new>
 
 #include "sim/base/interruption.h"
@@ -13,14 +12,12 @@ namespace {
 
 constexpr int kMostScans = 500;
 
-/// Where the library's errors of a thread lead: it leaves a call by a jump over all frames between.
-thread_local std::jmp_buf end_of_jpeg_call;
-
 }  // namespace
 
 void JpegFile::fail(j_common_ptr decoder, const char* reason) {
-  static_cast<JpegFile*>(decoder->client_data)->reason_ = reason;
-  std::longjmp(end_of_jpeg_call, 1);
+  auto& file = *static_cast<JpegFile*>(decoder->client_data);
+  file.reason_ = reason;
+  std::longjmp(file.end_of_call_, 1);
 }
 
 void JpegFile::fail(j_common_ptr decoder) {
@@ -44,7 +41,7 @@ void JpegFile::poll(j_common_ptr decoder) {
 /// @param body  holds no object that has a destructor
 template <class Body>
 void JpegFile::demand(const Body& body) {
-  if (setjmp(end_of_jpeg_call) == 0) {
+  if (setjmp(end_of_call_) == 0) {
     body();
     return;
   }

@@ -3,6 +3,7 @@
 // Left out: CMYK, which is refused; the size that a caller expects (image_file.h).
 #pragma once
 
+#include <csetjmp>
 #include <cstdint>
 #include <cstdio>  // for jpeglib.h
 #include <span>
@@ -45,7 +46,8 @@ class JpegFile {
   jpeg_error_mgr errors_{};
   jpeg_progress_mgr progress_{};
   Decoder decoder_;
-  std::string reason_;  ///< of the last error
+  std::jmp_buf end_of_call_;  ///< the library leaves a call by a jump over all frames between
+  std::string reason_;        ///< of the last error
 };
 
 }  // namespace leviosim::traces
