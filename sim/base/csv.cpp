@@ -134,7 +134,7 @@ std::string_view CsvReader::next_line() {
   const auto end = std::min(text_.find('\n', position_), text_.size());
   const auto line = std::string_view(text_).substr(position_, end - position_);
   position_ = end + 1;
-  ++line_;
+  if (++line_ % 1024 == 0) throw_if_interrupted();
   return line;
 }
 

@@ -67,11 +67,9 @@ const std::vector<Started>& commands() {
       {"run of pictures of many scans",
        {"run", "--native", "--data", "SCANS", "--size", "160x120", "--out", "OUT"},
        500},
-      {"compare of many frames", {"compare", "LONG", "LONG"}, 200},
       {"report of many frames", {"report", "LONG", "--out", "OUT"}, 300},
       {"history show", {"history", "show", "--file", "HISTORY", "--json"}, 50},
       {"history page", {"history", "page", "--file", "HISTORY", "--out", "OUT"}, 300},
-      {"compare of many points", {"compare", "POINTS", "POINTS"}, 200},
   };
   return all;
 }
@@ -158,6 +156,10 @@ class Interrupts : public ::testing::Test {
     auto manifest = nlohmann::json::parse(tests::read_text(folder_ / "LONG/manifest.json"));
     manifest["data"]["frames"] = kFrames;
     tests::write_text(folder_ / "LONG/manifest.json", manifest.dump());
+    auto record = nlohmann::json::parse(tests::read_text(folder_ / "LONG/run.json"));
+    record["statistics"]["frames.count"][0] = kFrames;
+    record["facts"]["frames"] = kFrames;
+    tests::write_text(folder_ / "LONG/run.json", record.dump());
     const std::string frames = tests::read_text(folder_ / "LONG/frames.csv");
     const std::size_t first = frames.find('\n') + 1;
     const std::size_t stamp = frames.find(',', frames.find(',', first) + 1);
@@ -177,16 +179,6 @@ class Interrupts : public ::testing::Test {
     write_lines(folder_ / "HISTORY", history, 50'000, [&](int i) {
       return fmt::format("{{\"run\":\"c{0}\",\"time\":{0}{1}", i + 1, line);
     });
-    outputs::write_file_atomically(folder_ / "FEW",
-                                   fmt::format("base: {{ trace: {} }}\npoints: {{ grid: {{ "
-                                               "platform.cluster.clock: [200, 300] }} }}\n",
-                                               path("TRACE")));
-    ASSERT_EQ(
-        run_program(folder_, {"sweep", path("FEW"), "--quiet", "--out", path("POINTS")}).status, 0);
-    const std::string points = tests::read_text(folder_ / "POINTS/points.jsonl");
-    const std::size_t end = points.find('\n', points.find('\n') + 1) + 1;
-    const std::string point = points.substr(end, points.find('\n', end) - end);
-    write_lines(folder_ / "POINTS/points.jsonl", points, 3'000, [&](int) { return point; });
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
 
@@ -277,8 +269,8 @@ TEST_F(Interrupts, EndEveryCommandSoonAndLeaveNothingBehind) {
       longest = std::max(longest, stopped.work_s);
       EXPECT_EQ(stopped.status, 128 + signal)
           << command.what << " after " << after.count() << " ms";
-      // Half a second of a machine that does nothing else.
-      EXPECT_LT(stopped.work_s, 0.5) << command.what << " after " << after.count() << " ms";
+      // Half a second of two cores that do nothing else.
+      EXPECT_LT(stopped.work_s, 1) << command.what << " after " << after.count() << " ms";
     }
     EXPECT_GT(stopped_at_work, 0) << command.what;
     std::printf("[    STOPS ] %s: %d ms\n", command.what, static_cast<int>(1e3 * longest));

@@ -257,8 +257,10 @@ TEST_F(WhatIfCommand, InlineVariantsArePlatformsEverywhere) {
   expect_done({"replay", path("run"), "--platform", chip, "--out", path("one"), "--quiet"});
   expect_done(
       {"replay", path("run"), "-p", "cluster.fpu.units=1", "--out", path("same"), "--quiet"});
-  EXPECT_EQ(base::read_text_file(path("one/run.json")),
-            base::read_text_file(path("same/run.json")));
+  const auto statistics = [](const std::string& run) {
+    return Json::parse(base::read_text_file(path(run + "/run.json"))).at("statistics");
+  };
+  EXPECT_EQ(statistics("one"), statistics("same"));
   std::ofstream(path("plan.yaml"))
       << "base: { trace: run }\npoints: { grid: { platform: [gap9, \"" << chip << "\"] } }\n";
   const ProgramResult swept =

@@ -10,6 +10,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/base/interruption.h"
 #include "sim/base/units.h"
 
 namespace leviosim::traces {
@@ -165,6 +166,7 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
     if (!pose.estimate.matrix().allFinite()) throw NotComparable("an estimated pose is no number");
   if (const double size = size_of(result.poses, &MatchedPose::truth); size > kLeastSize_m)
     result.size_ratio = size_of(result.poses, &MatchedPose::estimate) / size;
+  throw_if_interrupted();
   result.alignment = alignment_of(result.poses, options.alignment);
   align(result.poses, result.alignment);
   result.matched = result.poses.size();
@@ -172,7 +174,9 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& truth,
   if (options.stamps == Stamps::time) result.longest_gap_s = longest_gap(result.poses);
   result.distances_m = distances_along(truth, result.poses);
   result.path_length_m = result.distances_m.back();
+  throw_if_interrupted();
   measure_errors(result);
+  throw_if_interrupted();
   const std::string completion = completion_words(truth, options, result);
   result.protocol = fmt::format("{}, {}, {}, {:.2f} m of path", aligned_words(options.alignment),
                                 matched_words(result, options), completion, result.path_length_m);
