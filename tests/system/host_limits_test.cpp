@@ -91,15 +91,16 @@ TEST_F(HostLimits, SparseFilesAreRefusedUnread) {
   write_text(path("budget.yaml"), "budgets: [{ limits: [L1 peak <= +1 kB] }]\n");
   refused({"check", path("run"), "--budget", path("budget.yaml"), "--baseline", path("x.json")},
           "x.json");
-  for (const char* file : {"work.trace", "stats.json", "frames.csv", "manifest.json"}) {
+  const std::vector<std::pair<const char*, std::vector<std::string>>> readers{
+      {"work.trace", {"whatif", path("copy")}},
+      {"run.json", {"compare", path("copy"), path("run")}},
+      {"frames.csv", {"report", path("copy"), "--out", path("page.html"), "--force"}},
+      {"manifest.json", {"report", path("copy"), "--out", path("page.html"), "--force"}}};
+  for (const auto& [file, words] : readers) {
     fs::remove_all(path("copy"));
     fs::copy(path("run"), path("copy"), fs::copy_options::recursive);
     sparse(std::string("copy/") + file);
-    const bool is_trace = std::string_view(file) == "work.trace";
-    if (is_trace)
-      refused({"whatif", path("copy")}, file);
-    else
-      refused({"compare", path("copy"), path("run")}, file);
+    refused(words, file);
   }
 }
 
