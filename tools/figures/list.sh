@@ -8,7 +8,7 @@ figure what-if
 needs data
 after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
 shows 'leviosim whatif recorded cluster.fpu.units=1,2,8 cluster.icache.shared_size=8KiB'
-cut 'sed -n "/^in short/p;/^  *mean ms/,/^next/p" | grep -v "^next"'
+cut 'sed -n "/^in short/p;/^  *mean ms/,/^next/p" | grep -v -e "^next" -e "^    "'
 
 figure missed-deadlines
 needs data
