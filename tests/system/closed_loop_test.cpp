@@ -16,6 +16,7 @@
 #include "tools/app/result/summary.h"
 #include "tools/app/run/live_source.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_tables.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

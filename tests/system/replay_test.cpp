@@ -11,6 +11,7 @@
 #include "tools/app/record/statistics.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_tables.h"
 #include "tools/app/run/workload.h"
 #include "traces/synthesis/synthetic.h"
 #include "workload/vio/profile.h"

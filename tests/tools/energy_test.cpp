@@ -11,6 +11,7 @@
 #include "tools/app/record/statistics.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_tables.h"
 
 namespace leviosim::tools {
 namespace {

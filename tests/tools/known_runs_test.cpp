@@ -15,6 +15,7 @@
 #include "tests/tools/statistic_values.h"
 #include "tools/app/record/statistics.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_tables.h"
 #include "tools/app/table/table_files.h"
 
 namespace leviosim::tools {

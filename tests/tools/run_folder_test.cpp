@@ -1,4 +1,5 @@
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_tables.h"
 
 #include <gtest/gtest.h>
 

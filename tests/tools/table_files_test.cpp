@@ -6,6 +6,7 @@
 #include "tests/tools/example_run.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_tables.h"
 
 namespace leviosim::tools {
 namespace {

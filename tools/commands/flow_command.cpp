@@ -10,6 +10,7 @@
 #include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/run/run_tables.h"
 
 namespace leviosim::tools {
 namespace {

@@ -19,7 +19,6 @@
 // pages also the tables.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -28,43 +27,10 @@
 #include "sim/outputs/output_folder.h"
 #include "tools/app/record/record.h"
 #include "tools/app/result/run_result.h"
+#include "tools/app/run/manifest.h"
 #include "tools/app/table/table_files.h"
-#include "traces/datasets/dataset.h"
 
 namespace leviosim::tools {
-
-// What a run was made from: enough to repeat it, and to see that two runs had the same inputs.
-
-// SHA-256 of the inputs of a run, for its manifest.
-
-struct InputDigest {
-  std::string name;  ///< relative to the data folder
-  std::int64_t bytes = 0;
-  std::string sha256;
-};
-
-/// @throws InputError if the file cannot be read
-InputDigest digest_of_file(const std::filesystem::path& file);
-
-/// The text files of the streams that a run reads, and its frames as one: the concatenation of
-/// their image files. @throws InputError for files that cannot be read
-std::vector<InputDigest> digest_inputs(const traces::Dataset& data);
-
-struct Manifest {
-  std::vector<std::string> command_line;  ///< words as typed
-  std::uint32_t seed = 1;                 ///< of the workload
-  std::string platform;                   ///< as requested; empty for a native run
-  std::vector<std::string> overrides;     ///< of platform parameters
-  std::vector<std::string> workload;      ///< its parameters that were set, "workload.window=6"
-  std::string data;                       ///< folder that was read, or "synthetic"
-  std::size_t first_frame = 0;            ///< index in the folder
-  std::vector<InputDigest> inputs;
-  Json recording;  ///< of a replay: what its trace says about the run that was recorded
-};
-
-/// The content of manifest.json. Its member "host" is the only part of a run folder that differs
-/// between two runs of the same program on the same inputs.
-Json manifest_json(const Manifest& manifest, const RunResult& run);
 
 inline constexpr const char* kRecordFile = "run.json";
 inline constexpr const char* kManifestFile = "manifest.json";
@@ -109,13 +75,5 @@ void write_run_folder(outputs::OutputFolder& out, const RunFolder& run,
 /// @param with_tables  and the manifest; else the record alone
 /// @throws InputError if the folder is not that of a run
 RunFolder read_run_folder(const std::filesystem::path& folder, bool with_tables);
-
-/// The tables of the CSV files; the units stand in the keys.
-Table stage_rows(const RunResult& run);
-Table frame_rows(const RunResult& run);
-Table memory_rows(const RunResult& run);
-Table energy_rows(const RunResult& run);
-/// Empty where there is no truth, and for replays, whose traces hold no poses of it.
-Table error_rows(const RunResult& run);
 
 }  // namespace leviosim::tools
