@@ -193,9 +193,10 @@ class SampleTimes {
   sim::TeamMemory memory_;
 };
 
-/// Over the figure itself.
+/// Over the figure itself, which is exactly 1: a band changes no digit of a time.
 Banded relative(const Banded& figure) {
-  return figure.value == 0 ? Banded{1, 1, 1} : (1 / figure.value) * figure;
+  if (figure.value == 0) return {1, 1, 1};
+  return {1, figure.low / figure.value, figure.high / figure.value};
 }
 
 }  // namespace

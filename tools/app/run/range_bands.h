@@ -79,8 +79,8 @@ std::vector<Banded> range_bands(const platform::Variants& platform, const ChipFi
 // number of the platform at both ends of its range.
 //
 // Left out: other frames than those kept, and of forks of one name in a stage, such as the
-// hypotheses of a RANSAC, all but a few. They differ in how much they have of what a number changes,
-// which is small beside the bands.
+// hypotheses of a RANSAC, all but a few. They differ in how much they have of what a number
+// changes, which is small beside the bands.
 
 /// Jobs of a run: the slowest frame, a few others spread over it, the longest iteration.
 class JobSample {
