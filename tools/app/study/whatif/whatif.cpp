@@ -72,7 +72,6 @@ VariantResult timed(const Variant& variant, const ResolvedPoint& point, KnownRun
   const RunFigures figures = figures_of(run);
   result.verdicts = figures.verdicts;
   result.unused = unused_accelerators(figures);
-  result.l1_peak = figures.value("memory.l1.peak").value_or(0);
   take_costs(result, run);
   result.parts = {cycle_parts(run), request.cores, static_cast<double>(run.frames.size()),
                   run.cluster_clock};
@@ -268,6 +267,7 @@ void WhatIf::raise_event_unit(Variant& variant) {
 }
 
 ResolvedPoint WhatIf::resolved(const Variant& variant) {
+  const std::lock_guard<std::mutex> lock(resolving_);
   SweepRow settings = variant.settings;
   settings["trace"] = trace_;
   const traces::WorkTrace& trace = *inputs_.trace(trace_, {trace_}).work;
@@ -309,34 +309,19 @@ ResolvedPoint WhatIf::resolved(const Variant& variant) {
   return resolve(plan_, run, inputs_, where);
 }
 
-VariantResult WhatIf::with_larger_l1(Variant variant) {
+VariantResult WhatIf::with_larger_l1(const Variant& variant) {
   constexpr std::int64_t kKiB = 1024;
   constexpr std::int64_t kStep = 16 * kKiB;
-  const auto result = [&](std::int64_t bytes) {
+  const std::int64_t small = resolved(variant).request.platform.config.cluster.l1.size.count();
+  for (std::int64_t size = (small / kStep + 1) * kStep;; size += kStep) {
     Variant larger = variant;
-    raise(larger, kL1Size, fmt::format("{}KiB", bytes / kKiB));
-    std::optional<ResolvedPoint> point;
-    {
-      const std::lock_guard<std::mutex> lock(resolving_);
-      point = resolved(larger);
-    }
-    return timed(larger, *point, known_);
-  };
-  std::int64_t size = 0;
-  {
-    const std::lock_guard<std::mutex> lock(resolving_);
-    size = resolved({}).request.platform.config.cluster.l1.size.count();
-  }
-  VariantResult twice = result(2 * size);
-  const auto peak = static_cast<std::int64_t>(twice.l1_peak);
-  for (std::int64_t least = std::max(size, (peak - 1) / kStep * kStep) + kStep; least < 2 * size;
-       least += kStep)
-    try {
-      return result(least);
+    raise(larger, kL1Size, fmt::format("{}KiB", size / kKiB));
+    try {  // what does not fit fails within the first frames
+      return timed(larger, resolved(larger), known_);
     } catch (const work::MemoryOverflow&) {
-      continue;  // what was aligned and split among cores took more than the sum
+      if (size >= 2 * small) throw;
     }
-  return twice;
+  }
 }
 
 std::vector<VariantResult> WhatIf::results(const std::vector<Variant>& variants,
@@ -345,13 +330,8 @@ std::vector<VariantResult> WhatIf::results(const std::vector<Variant>& variants,
   all.insert(all.end(), variants.begin(), variants.end());
   std::vector<VariantResult> results(all.size());
   const auto result_of = [&](const Variant& variant) {
-    std::optional<ResolvedPoint> point;
-    {
-      const std::lock_guard<std::mutex> lock(resolving_);
-      point = resolved(variant);
-    }
     try {
-      return timed(variant, *point, known_);
+      return timed(variant, resolved(variant), known_);
     } catch (const work::MemoryOverflow& full) {
       const bool has_more_cores =
           variant.settings.count(kWorkers) > 0 && variant.settings.count(kL1Size) == 0;

@@ -47,7 +47,6 @@ struct VariantResult {
   std::optional<double> area_mm2;
   bool is_whole_area = true;  ///< else parts are unknown
   bool is_run = false;        ///< computed again, not replayed
-  double l1_peak = 0;         ///< [bytes]
   TimedParts parts;
   std::vector<std::string> unused;  ///< accelerators that served nothing: "hamming of the cluster"
 
@@ -85,16 +84,16 @@ class WhatIf {
   /// An event unit for as many cores as are asked for.
   void raise_event_unit(Variant& variant);
   ResolvedPoint resolved(const Variant& variant);
-  /// More cores need more of L1: the same with the least that holds the work, in steps.
+  /// More cores need more of L1: the same with the least that holds the work, in steps of 16 KiB.
   /// @throws InputError if twice the size does not hold it either
-  VariantResult with_larger_l1(Variant variant);
+  VariantResult with_larger_l1(const Variant& variant);
 
   SweepInputs& inputs_;
   std::string trace_;
   SweepRow again_;
   SweepPlan plan_;
   KnownRuns known_;
-  std::mutex resolving_;
+  std::mutex resolving_;  ///< inputs_ remembers what it has read
 };
 
 // What if, for people and programs: text of 80 columns, CSV, and a page with bars.
