@@ -62,52 +62,70 @@ double ratio_of_others(const work::CompiledWork& work) {
 
 }  // namespace
 
-CompiledRatios::CompiledRatios(const work::Counts& segment, work::CompiledFor code)
-    : CompiledRatios(work::compiled_of(segment.compiled, code)) {}
-
-CompiledRatios::CompiledRatios(const work::CompiledWork& work)
-    : measured_(is_measured(work)),
-      emitted_loops_(ratio_of_loops(work)),
-      emitted_(ratio_of_others(work)),
-      // Not of the loads: compiled code may execute fewer or more than were counted.
-      used_at_once_(work::compiled_ratio(work, Compiled::LoadsUsedAtOnce, Compiled::Priced, 0)) {}
-
-OperationsOfKind CompiledRatios::apply(Op op, double count) const {
-  const bool repeats = repeats_loops(op);
-  const double emitted = count * this->emitted(repeats);
-  return {.count = count,
-          .stalled = measured_ && repeats ? emitted : count,
-          .emitted = measured_ ? emitted : 0,
-          .unmeasured = measured_ ? 0 : count,
-          .used_at_once = count * used_at_once_};
-}
-
 std::array<OpCost, work::kOpCount> default_costs() {
   std::array<OpCost, work::kOpCount> costs{};
   costs[work::index(Op::IntAddShift)].issue = 2;  // a sum and a shift
   return costs;
 }
 
-OperationCost cost_of(const work::OpInfo& info, const OperationsOfKind& operations,
-                      const CoreConfig& core) {
-  const OpCost& cost = core[info.op];
-  OperationCost result;
-  // A routine was counted with its moves and spills.
-  result.issue =
-      cost.issue * (cost.routine ? operations.count
-                                 : operations.emitted * core.measured_instructions +
-                                       operations.unmeasured * core.unmeasured_instructions);
-  result.stall = operations.stalled * cost.stall;
-  result.stall_mechanism = stall_mechanism(info.op);
-  // In measured code, the instruction behind a load waits: any one.
-  double used_at_once = cost.routine ? 0 : operations.used_at_once * cost.issue;
-  if (info.op == Op::LoadStream || info.op == Op::LoadIndexed)
-    used_at_once += operations.unmeasured * core.load_use_fraction;
-  result.load_use = core.load_use_stall * used_at_once;
-  return result;
-}
-
 namespace {
+
+/// The ratios of one segment's compiled code.
+class CompiledRatios {
+ public:
+  CompiledRatios(const work::Counts& segment, work::CompiledFor code)
+      : CompiledRatios(work::compiled_of(segment.compiled, code)) {}
+
+  /// @param repeats  whether they repeat loops
+  OperationsOfKind apply(bool repeats, double count) const {
+    const double emitted = count * (repeats ? emitted_loops_ : emitted_);
+    return {.count = count,
+            .stalled = measured_ && repeats ? emitted : count,
+            .emitted = measured_ ? emitted : 0,
+            .unmeasured = measured_ ? 0 : count,
+            .used_at_once = count * used_at_once_};
+  }
+
+ private:
+  explicit CompiledRatios(const work::CompiledWork& work)
+      : measured_(is_measured(work)),
+        emitted_loops_(ratio_of_loops(work)),
+        emitted_(ratio_of_others(work)),
+        // Not of the loads: compiled code may execute fewer or more than were counted.
+        used_at_once_(work::compiled_ratio(work, Compiled::LoadsUsedAtOnce, Compiled::Priced, 0)) {}
+
+  bool measured_;
+  double emitted_loops_;  ///< of what repeats loops
+  double emitted_;        ///< of all else
+  double used_at_once_;   ///< loads, for each counted instruction
+};
+
+/// Cycles that operations of one kind cost a core that runs alone.
+struct OperationCost {
+  double issue;
+  double load_use;
+  double stall;
+  Mechanism stall_mechanism;
+
+  void add_to(LoneCycles& cycles) const {
+    cycles[Mechanism::Issue] += issue;
+    cycles[Mechanism::LoadUse] += load_use;
+    cycles[stall_mechanism] += stall;
+  }
+};
+
+OperationCost cost_of(const CoreCosts::Price& price, const OperationsOfKind& operations,
+                      const CoreCosts& core) {
+  // A routine was counted with its moves and spills.
+  const double issued = price.routine ? operations.count
+                                      : operations.emitted * core.measured_instructions +
+                                            operations.unmeasured * core.unmeasured_instructions;
+  // In measured code, the instruction behind a load waits: any one.
+  double used_at_once = price.routine ? 0 : operations.used_at_once * price.issue;
+  if (price.loads) used_at_once += operations.unmeasured * core.load_use_fraction;
+  return {price.issue * issued, core.load_use_stall * used_at_once,
+          operations.stalled * price.stall, price.stall_mechanism};
+}
 
 /// An iteration of a loop has its operations in a row, behind the loads of what they need.
 double run_of(double requests, std::uint64_t iterations) {
@@ -135,24 +153,15 @@ CoreCosts::CoreCosts(const CoreConfig& core)
   }
 }
 
-/// As cost_of() prices operations, one segment at a time.
 Demand demand_of(const work::Counts& counts, const CoreCosts& core, const CodeFetcher& code,
                  OperationAccounts* by_operation) {
   Demand demand;
   const CompiledRatios ratios(counts, core.code);
-  const double instructions =
-      ratios.measured() ? core.measured_instructions : core.unmeasured_instructions;
-  const double at_once = ratios.measured() ? 0 : core.load_use_fraction;
   for (std::size_t op = 0; op < work::kOpCount; ++op) {
     if (counts.n[op] == 0) continue;  // as most are in a short segment
     const CoreCosts::Price& price = core[op];
     const auto n = static_cast<double>(counts.n[op]);
-    const double emitted = n * ratios.emitted(price.repeats);
-    const double used_at_once = (price.routine ? 0 : n * ratios.used_at_once() * price.issue) +
-                                (price.loads ? n * at_once : 0);
-    const OperationCost alone{price.issue * (price.routine ? n : emitted * instructions),
-                              core.load_use_stall * used_at_once,
-                              (price.repeats ? emitted : n) * price.stall, price.stall_mechanism};
+    const OperationCost alone = cost_of(price, ratios.apply(price.repeats, n), core);
     alone.add_to(demand.alone);
     if (by_operation != nullptr) {
       OperationAccount& account = (*by_operation)[op];
@@ -186,7 +195,7 @@ void WorkSum::add(const work::Counts& segment, work::CompiledFor code) {
   const CompiledRatios ratios(segment, code);
   for (std::size_t i = 0; i < work::kOpCount; ++i)
     if (segment.n[i] > 0)
-      kinds_[i] += ratios.apply(work::kOps[i].op, static_cast<double>(segment.n[i]));
+      kinds_[i] += ratios.apply(repeats_loops(work::kOps[i].op), static_cast<double>(segment.n[i]));
 }
 
 WorkSum& WorkSum::operator+=(const WorkSum& other) {
@@ -194,10 +203,9 @@ WorkSum& WorkSum::operator+=(const WorkSum& other) {
   return *this;
 }
 
-LoneCycles WorkSum::cost(const CoreConfig& core) const {
+LoneCycles WorkSum::cost(const CoreCosts& core) const {
   LoneCycles cycles;
-  for (const work::OpInfo& info : work::kOps)
-    cost_of(info, kinds_[work::index(info.op)], core).add_to(cycles);
+  for (std::size_t i = 0; i < work::kOpCount; ++i) cost_of(core[i], kinds_[i], core).add_to(cycles);
   return cycles;
 }
 

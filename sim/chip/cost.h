@@ -54,46 +54,6 @@ inline bool is_measured(const work::CompiledWork& work) {
   return work[static_cast<std::size_t>(work::Compiled::Priced)] > 0;
 }
 
-/// The ratios of one segment's compiled code.
-class CompiledRatios {
- public:
-  CompiledRatios(const work::Counts& segment, work::CompiledFor code);
-  OperationsOfKind apply(work::Op op, double count) const;
-
-  bool measured() const { return measured_; }
-  /// Executed instructions for each counted one; 1 if none was measured.
-  double emitted(bool repeats) const {
-    if (!measured_) return 1;
-    return repeats ? emitted_loops_ : emitted_;
-  }
-  /// Loads whose value the next instruction needs, for each counted instruction.
-  double used_at_once() const { return used_at_once_; }
-
- private:
-  explicit CompiledRatios(const work::CompiledWork& work);
-
-  bool measured_;
-  double emitted_loops_;  ///< of what repeats loops
-  double emitted_;        ///< of all else
-  double used_at_once_;
-};
-
-/// Cycles that operations of one kind cost a core that runs alone.
-struct OperationCost {
-  double issue = 0;
-  double load_use = 0;
-  double stall = 0;
-  Mechanism stall_mechanism = Mechanism::Arithmetic;
-
-  void add_to(LoneCycles& cycles) const {
-    cycles[Mechanism::Issue] += issue;
-    cycles[Mechanism::LoadUse] += load_use;
-    cycles[stall_mechanism] += stall;
-  }
-};
-OperationCost cost_of(const work::OpInfo& info, const OperationsOfKind& operations,
-                      const CoreConfig& core);
-
 /// What a core's configuration says of operations, in the form that pricing many segments reads.
 class CoreCosts {
  public:
@@ -141,7 +101,7 @@ class WorkSum {
   WorkSum& operator+=(const WorkSum& other);
 
   /// For a core that runs alone.
-  LoneCycles cost(const CoreConfig& core) const;
+  LoneCycles cost(const CoreCosts& core) const;
 
  private:
   std::array<OperationsOfKind, work::kOpCount> kinds_{};
