@@ -23,7 +23,7 @@ class OutputFolder : public OutputPlace {
 
   /// Makes sure that so much can be written. [bytes] @throws InputError if the disk is full
   void reserve(std::uint64_t bytes);
-  /// Writes a file, "chosen/stats.json", with the folders to it. Each name once; several threads
+  /// Writes a file, "chosen/run.json", with the folders to it. Each name once; several threads
   /// may. @throws InputError if that fails
   void write(const std::string& name, std::string_view bytes);
   /// Gives the folder its name.

@@ -40,7 +40,7 @@ class StagingFolder {
   StagingFolder& operator=(const StagingFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Writes a file, "chosen/stats.json", with the folders to it. Several threads may call it.
+  /// Writes a file, "chosen/run.json", with the folders to it. Several threads may call it.
   /// @returns 0, or the error
   int write(const std::string& name, std::string_view bytes);
   /// Sets disk space aside until something is written. @returns 0, or the error

@@ -277,10 +277,15 @@ Json record_json(const RunRecord& record) {
 }
 
 RunRecord record_of_json(const std::string& where, const Json& json, Level least) {
+  const auto damaged = [&] {
+    return InputError(fmt::format("{}: does not hold a run as leviosim writes it", where));
+  };
   try {
     return read_record_json(json, least);
-  } catch (const std::exception&) {
-    throw InputError(fmt::format("{}: does not hold a run as leviosim writes it", where));
+  } catch (const Json::exception&) {
+    throw damaged();
+  } catch (const std::out_of_range&) {
+    throw damaged();
   }
 }
 

@@ -135,7 +135,7 @@ struct RunFigures {
 /// All frames that arrived.
 std::vector<RecordedFrame> recorded_frames(const RunResult& run);
 
-/// Adds to the statistics of stats.json what follows from them and from all frames: the peaks of L1
+/// Adds to the statistics of run.json what follows from them and from all frames: the peaks of L1
 /// and L2, operations of stages, the signs of the map, and the verdicts as grades (verdict.*).
 void complete(RunFigures& run, const std::vector<RecordedFrame>& frames);
 

@@ -1,5 +1,5 @@
 // Whether a run does what it should: three verdicts, each with its reason. They are the same in
-// what a command prints, in stats.json, on pages and for budgets.
+// what a command prints, in run.json, on pages and for budgets.
 //
 //   time    fits; fits on average: some frames come late; too slow: a mean frame takes longer than
 //           the camera's period, so that frames pile up or are lost
