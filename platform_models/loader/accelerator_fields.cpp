@@ -1,4 +1,4 @@
-#include "platform_models/loader/fields.h"
+#include "platform_models/loader/accelerator_fields.h"
 
 #include <fmt/format.h>
 

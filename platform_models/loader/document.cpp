@@ -11,7 +11,7 @@
 #include "platform_models/loader/instruction_set.h"
 #include "platform_models/loader/override.h"
 #include "platform_models/loader/yaml_entries.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
 
 namespace leviosim::platform {
 namespace {

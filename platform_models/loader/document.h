@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
+#include "platform_models/loader/parameter.h"
 #include "platform_models/loader/schema.h"
-#include "platform_models/loader/value.h"
 
 namespace leviosim::platform {
 

@@ -1,4 +1,4 @@
-#include "platform_models/loader/fields.h"
+#include "platform_models/loader/energy_fields.h"
 
 #include <algorithm>
 #include <array>

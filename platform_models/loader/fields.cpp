@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "platform_models/loader/accelerator_fields.h"
+#include "platform_models/loader/energy_fields.h"
 #include "platform_models/loader/member_values.h"
 #include "sim/work/op.h"
 

@@ -8,7 +8,7 @@
 
 #include "platform_models/loader/builtin.h"
 #include "sim/base/input_file.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
 
 namespace leviosim::platform {
 namespace {

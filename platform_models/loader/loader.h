@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "platform_models/loader/value.h"
+#include "platform_models/loader/parameter.h"
 #include "sim/chip/config.h"
 
 namespace leviosim::platform {
@@ -41,24 +41,5 @@ sim::ChipConfig load_platform(const std::string& name_or_path,
 
 /// A platform file that gives the same configuration, overrides included, when it is loaded.
 std::string to_yaml(const ResolvedPlatform& platform);
-
-// A file to begin a chip of one's own with.
-
-/// What a number was found at, so that it may not hold on a chip where that differs.
-struct Dependence {
-  std::string_view mark;     ///< in the file, in parentheses: "clock"
-  std::string_view meaning;  ///< a line
-};
-std::vector<Dependence> dependences();
-
-/// The marks of a parameter, in the order of dependences().
-std::vector<std::string_view> marks_of(const Parameter& parameter);
-
-/// A platform file with everything of `from` under another name: what each number is, its source,
-/// and the marks of those that depend on what the new chip may have otherwise. It loads to the same
-/// configuration.
-/// @param from_name  as it was asked for: "gap9"
-std::string new_platform(const std::string& name, const ResolvedPlatform& from,
-                         const std::string& from_name);
 
 }  // namespace leviosim::platform

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "platform_models/loader/instruction_set.h"
+#include "platform_models/loader/parameter.h"
 #include "platform_models/loader/value.h"
 #include "sim/base/text.h"
 

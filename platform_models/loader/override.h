@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "platform_models/loader/document.h"
+#include "platform_models/loader/parameter.h"
 #include "platform_models/loader/schema.h"
 #include "platform_models/loader/value.h"
 

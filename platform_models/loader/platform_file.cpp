@@ -10,11 +10,13 @@
 #include "platform_models/loader/compiled_code.h"
 #include "platform_models/loader/instruction_set.h"
 #include "platform_models/loader/override.h"
+#include "platform_models/loader/parameter.h"
 #include "platform_models/loader/rules.h"
 #include "platform_models/loader/value.h"
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
+#include "sim/base/nearest_name.h"
 #include "sim/base/text.h"
 
 namespace leviosim::platform {

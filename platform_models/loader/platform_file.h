@@ -65,8 +65,7 @@ class PlatformFile {
 /// and time work alike.
 std::string canonical_text(const Schema& schema, const ResolvedPlatform& platform);
 
-// Parameters → the chip that they describe.
-
+/// Parameters → the chip that they describe.
 /// @param name  of the chip
 sim::ChipConfig configure(const Schema& schema, const std::string& name, const Settings& settings);
 

@@ -19,13 +19,4 @@ void check_values(const Schema& schema, const Settings& settings, const sim::Chi
 /// "cluster.workers is 9 cores (-p cluster.workers=9)"
 std::string state(const Setting& setting);
 
-// What must hold between supply voltage, clocks and energy figures.
-
-/// Throws an InputError if a platform has only a part of `supply` and `energy`, or of `area`.
-void check_energy_is_whole(const Schema& schema, const Settings& settings);
-
-/// Throws an InputError that names the parameters at odds and where each was given. A platform
-/// without the sections `supply` and `energy` passes, at any clock.
-void check_supply(const Schema& schema, const Settings& settings, const sim::ChipConfig& chip);
-
 }  // namespace leviosim::platform

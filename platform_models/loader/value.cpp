@@ -5,8 +5,9 @@
 
 #include <cmath>
 
+#include "platform_models/loader/parameter.h"
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
 
 namespace leviosim::platform {
 namespace {

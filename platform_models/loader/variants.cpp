@@ -4,11 +4,12 @@
 
 #include <utility>
 
+#include "platform_models/loader/parameter.h"
 #include "platform_models/loader/platform_file.h"
 #include "platform_models/loader/rules.h"
 #include "platform_models/loader/value.h"
 #include "sim/base/check.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
 
 namespace leviosim::platform {
 

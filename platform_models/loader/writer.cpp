@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "platform_models/loader/loader.h"
+#include "platform_models/loader/new_platform.h"
 #include "platform_models/loader/override.h"
 #include "platform_models/loader/schema.h"
+#include "platform_models/loader/units.h"
 #include "sim/base/check.h"
 #include "sim/base/text.h"
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sim/events/last_time.h"
 #include "sim/events/timebase.h"
 #include "sim/work/op.h"
 

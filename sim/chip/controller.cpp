@@ -8,6 +8,7 @@
 
 #include "sim/base/error.h"
 #include "sim/chip/accelerator.h"
+#include "sim/events/last_time.h"
 #include "sim/events/timebase.h"
 
 namespace leviosim::sim {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sim/chip/work_sum.h"
 #include "sim/work/op.h"
 
 namespace leviosim::sim {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "sim/base/check.h"
-#include "sim/events/timebase.h"
+#include "sim/events/last_time.h"
 
 namespace leviosim::sim {
 namespace {

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/chip/area_config.h"
 #include "sim/chip/config.h"
 #include "sim/energy/domain.h"
 

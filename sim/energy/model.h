@@ -17,7 +17,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 
 #include "sim/chip/config.h"
 #include "sim/energy/activity.h"
@@ -43,20 +42,5 @@ bool knows_energy(const ChipConfig& chip);
 
 /// At the chip's supply voltage and clocks. The chip must have energy figures.
 DomainEnergies energy_of(const Activity& activity, const ChipConfig& chip);
-
-// Which clocks a supply voltage allows.
-//
-// Models: the highest clock as a straight line between two measured points; voltages in the steps
-// of the supply. Leaves out: temperature, process, a limit of its own for each clock domain, and
-// voltages outside the two points.
-
-/// Whether the supply can be set to this voltage: between its lowest and highest one, in steps.
-bool can_supply(const SupplyConfig& supply, Volts voltage);
-
-/// Highest clock at a voltage between the two points.
-Hertz highest_clock(const SupplyConfig& supply, Volts voltage);
-
-/// Lowest voltage that the supply can be set to and that allows the clock, if there is one.
-std::optional<Volts> lowest_voltage(const SupplyConfig& supply, Hertz clock);
 
 }  // namespace leviosim::sim

@@ -3,8 +3,10 @@
 #include <bit>
 #include <utility>
 
+#include "sim/events/last_time.h"
 #include "sim/events/sync.h"
 #include "sim/events/timebase.h"
+#include "sim/events/timer.h"
 
 namespace leviosim::sim {
 namespace {

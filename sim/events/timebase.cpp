@@ -9,6 +9,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/events/last_time.h"
 
 namespace leviosim::sim {
 namespace {

@@ -96,10 +96,9 @@ std::filesystem::path resolved(const std::string& path, std::error_code& error);
 /// exist.
 bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder);
 
-// A file that is never half-written: it appears under its name only when complete. It replaces
-// whatever has the name; results that users ask for go through sim/outputs/output_folder.h instead.
-
-/// Writes beside `file` and renames. Throws InputError if the folder cannot be written.
+/// A file that is never half-written: it appears under its name only when complete. It replaces
+/// whatever has the name; results that users ask for go through sim/outputs/output_folder.h
+/// instead. Writes beside `file` and renames. Throws InputError if the folder cannot be written.
 void write_file_atomically(const std::filesystem::path& file, std::string_view contents);
 
 }  // namespace leviosim::outputs

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/outputs/output_place.h"
+#include "sim/outputs/staging_folder.h"
 
 namespace leviosim::outputs {
 
@@ -37,24 +38,6 @@ class OutputFolder : public OutputPlace {
 
   std::vector<std::filesystem::path> made_parents_;
   std::optional<StagingFolder> staging_;
-};
-
-// Single files that the user asked for by name. As folders of results, they are
-// claimed before any work is done, appear whole, and replace only what leviosim wrote, which the
-// record of their folder names. Several processes may write different files of one folder.
-
-class OutputFile : public OutputPlace {
- public:
-  /// @throws InputError if the file cannot be written, or must not be replaced; Interrupted
-  explicit OutputFile(OutputRequest request);
-
-  /// Writes the file and gives it its name. Once.
-  /// @returns nothing, or why it has another name now, which the text tells
-  /// @throws InputError if it cannot be written; Interrupted
-  [[nodiscard]] std::optional<std::string> publish(std::string_view bytes);
-
- private:
-  void judge() const;
 };
 
 }  // namespace leviosim::outputs

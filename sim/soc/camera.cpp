@@ -7,7 +7,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
 
 namespace leviosim::soc {
 namespace {

@@ -10,6 +10,7 @@
 #include "sim/events/kernel.h"
 #include "sim/events/sync.h"
 #include "sim/events/task.h"
+#include "sim/events/timer.h"
 #include "tests/bench/event_kernel_networks.h"
 
 namespace leviosim::bench::own {

@@ -14,7 +14,7 @@
 #include "workload/inertial/preintegration.h"
 #include "workload/levio/geometry/epnp_ransac.h"
 #include "workload/levio/geometry/essential_ransac.h"
-#include "workload/levio/geometry/svd.h"
+#include "workload/levio/geometry/jacobi.h"
 #include "workload/levio/vision/levio_matcher.h"
 #include "workload/math/matrix.h"
 #include "workload/vision/extractor.h"

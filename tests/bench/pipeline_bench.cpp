@@ -17,6 +17,7 @@
 #include "platform_models/loader/loader.h"
 #include "sim/soc/job_timer.h"
 #include "tests/bench/cpu_time.h"
+#include "tools/app/run/feed.h"
 #include "tools/app/run/live_source.h"
 #include "traces/synthesis/synthetic.h"
 #include "workload/vio/odometry/odometry.h"

@@ -10,6 +10,7 @@
 #include "sim/base/error.h"
 #include "tests/workload/graph/optimiser_scene.h"
 #include "tests/workload/levio/two_view_scene.h"
+#include "tools/app/run/feed.h"
 #include "tools/app/run/live_source.h"
 
 namespace leviosim::rv32 {

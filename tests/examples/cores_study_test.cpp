@@ -73,8 +73,7 @@ Command add_cores_command(CLI::App& app, const Words& words) {
       app, words,
       {"cores", "A workload on one, two, four … cores", "chip", {"leviosim cores --data flight"}},
       [](CLI::App& command, StudyOptions& o) { add_chip_run_options(command, o); },
-      [](const StudyOptions& o) { return data_inputs(o.data); },
-      cores_answer);
+      [](const StudyOptions& o) { return data_inputs(o.data); }, cores_answer);
 }
 
 TEST(CoresStudy, IsOneFileAndLeavesCsvAndPage) {

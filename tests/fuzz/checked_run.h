@@ -4,6 +4,8 @@
 #include <cstdlib>
 
 #include "tools/app/budget/check.h"
+#include "tools/app/budget/check_for_ci.h"
+#include "tools/app/budget/check_report.h"
 #include "tools/app/record/record.h"
 
 namespace leviosim::fuzz {

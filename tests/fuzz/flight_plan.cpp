@@ -1,5 +1,5 @@
 // Plans of benchmarks of flights. No flight is opened.
-#include "tools/app/study/flights/benchmark.h"
+#include "tools/app/study/flights/flight_plan.h"
 
 #include "tests/fuzz/fuzz_target.h"
 

@@ -1,6 +1,7 @@
 // Histories of runs: of each run that is read, there is a line already, or one can be written that
 // is read again.
 #include "tools/app/history/history.h"
+#include "tools/app/history/history_report.h"
 
 #include "tests/fuzz/fuzz_target.h"
 

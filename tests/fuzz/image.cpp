@@ -1,6 +1,6 @@
 // Images of a camera of 64x48 pixels.
 #include "tests/fuzz/fuzz_target.h"
-#include "traces/datasets/image_preparation.h"
+#include "traces/datasets/image_source.h"
 
 namespace {
 

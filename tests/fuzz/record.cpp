@@ -6,10 +6,11 @@
 #include "tests/fuzz/checked_run.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/comparability.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/html_report/run_data.h"
 #include "tools/app/study/accuracy_study.h"
-#include "tools/app/study/engine.h"
+#include "tools/app/study/outcome_cache.h"
 
 namespace {
 

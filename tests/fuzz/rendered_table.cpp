@@ -2,7 +2,7 @@
 // JSON, and its Markdown has as many rows and cells as the table, of which nothing is live.
 #include <nlohmann/json.hpp>
 
-#include "sim/base/text.h"
+#include "sim/base/printable.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tools/app/table/table_files.h"
 #include "tools/app/table/terminal_table.h"

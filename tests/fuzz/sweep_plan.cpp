@@ -1,7 +1,8 @@
 // Plans of sweeps. What they name is opened, too: only built-in
 // platforms are there.
 #include "tests/fuzz/fuzz_target.h"
-#include "tools/app/study/sweep/points.h"
+#include "tools/app/study/sweep/plan.h"
+#include "tools/app/study/sweep/sweep_inputs.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace leviosim;

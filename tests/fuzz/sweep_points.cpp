@@ -1,6 +1,7 @@
 // Files of a sweep's points. What is read is written again as the same table, and no other file of
 // the folder disappears.
 #include "tests/fuzz/fuzz_target.h"
+#include "tools/app/study/sweep/pareto_front.h"
 #include "tools/app/study/sweep/sweep_store.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // Sections `supply` and `energy`: clocks that a voltage does not allow, bands, completeness.
-#include "sim/energy/estimate.h"
+#include "sim/energy/uncertainty_sources.h"
 #include "tests/platform_models/platform_test.h"
 
 namespace leviosim::platform {

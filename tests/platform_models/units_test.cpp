@@ -5,9 +5,10 @@
 #include <limits>
 
 #include "platform_models/loader/schema.h"
+#include "platform_models/loader/units.h"
 #include "platform_models/loader/value.h"
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
 
 namespace leviosim::platform {
 namespace {

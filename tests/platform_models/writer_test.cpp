@@ -1,5 +1,6 @@
 // The resolved platform as a file: it loads to the same configuration.
 #include "platform_models/loader/loader.h"
+#include "platform_models/loader/new_platform.h"
 #include "sim/work/op.h"
 #include "tests/platform_models/platform_test.h"
 

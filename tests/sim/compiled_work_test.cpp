@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/chip/cost.h"
+#include "sim/chip/work_sum.h"
 #include "sim/work/code_tracker.h"
 #include "sim/work/op.h"
 

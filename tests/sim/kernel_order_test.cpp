@@ -10,6 +10,7 @@
 #include "sim/events/channel.h"
 #include "sim/events/kernel.h"
 #include "sim/events/sync.h"
+#include "sim/events/timer.h"
 
 namespace leviosim::sim {
 namespace {

@@ -14,6 +14,7 @@
 #include "sim/events/kernel.h"
 #include "sim/events/sync.h"
 #include "sim/events/task.h"
+#include "sim/events/timer.h"
 
 namespace leviosim::sim {
 namespace {

@@ -1,5 +1,5 @@
 // Timers: armed again, cancelled, and used as the ends of segments that share a resource.
-#include "sim/events/sync.h"
+#include "sim/events/timer.h"
 
 #include <gtest/gtest.h>
 

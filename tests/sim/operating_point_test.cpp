@@ -1,5 +1,5 @@
 // Clocks and voltages on the line between two points.
-#include "sim/energy/model.h"
+#include "sim/energy/supply.h"
 
 #include <gtest/gtest.h>
 

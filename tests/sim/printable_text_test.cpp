@@ -1,5 +1,5 @@
 // Text for terminals: what is escaped, what stays, and that nothing else comes out of any bytes.
-#include "sim/base/text.h"
+#include "sim/base/printable.h"
 
 #include <gtest/gtest.h>
 

@@ -14,8 +14,10 @@
 #include "sim/chip/cost.h"
 #include "sim/events/channel.h"
 #include "sim/events/kernel.h"
+#include "sim/events/last_time.h"
 #include "sim/events/sync.h"
 #include "sim/events/task.h"
+#include "sim/events/timer.h"
 
 namespace leviosim::testing {
 namespace {

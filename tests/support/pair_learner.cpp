@@ -9,7 +9,7 @@
 #include "sim/work/machine.h"
 #include "tests/support/temporary_folder.h"
 #include "traces/datasets/asl_reader.h"
-#include "traces/datasets/image_preparation.h"
+#include "traces/datasets/image_source.h"
 #include "traces/synthesis/synthetic.h"
 #include "workload/levio/vision/levio_blur.h"
 #include "workload/levio/vision/levio_descriptor.h"

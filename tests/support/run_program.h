@@ -21,7 +21,7 @@
 #include "sim/base/csv.h"
 #include "tests/support/paths.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/screen.h"
 
 namespace leviosim::tools::testing {
 

@@ -7,6 +7,8 @@
 
 #include "tests/support/run_program.h"
 #include "tools/app/study/ablate/ablation.h"
+#include "tools/app/study/ablate/ablation_report.h"
+#include "tools/app/study/ablate/published_accuracy.h"
 #include "tools/app/study/explore/exploration.h"
 #include "traces/synthesis/synthetic.h"
 #include "workload/vio/profile.h"

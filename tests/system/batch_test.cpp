@@ -9,7 +9,13 @@
 
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/accuracy_study.h"
-#include "tools/app/study/engine.h"
+#include "tools/app/study/finished_runs.h"
+#include "tools/app/study/outcome_cache.h"
+#include "tools/app/study/point.h"
+#include "tools/app/study/runner.h"
+#include "tools/app/study/sequence.h"
+#include "tools/app/study/spread.h"
+#include "tools/app/table/table_files.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::tools {

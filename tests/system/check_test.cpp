@@ -247,6 +247,50 @@ TEST_F(Check, AnAcceptedMissPassesUntilItsDay) {
                  {"meets all limits"});
 }
 
+/// What was accepted has a bound of its own: a run that is worse fails again.
+TEST_F(Check, AnAcceptedMissHasABound) {
+  const std::string tight = write("miss2.yaml",
+                                  "budgets:\n  - limits:\n      - frame latency mean <= 1 us\n"
+                                  "      - L1 peak <= 1 kB\n");
+  std::vector<std::string> accept{"budget",  "accept",  path("run"),  "--budget", tight, "--reason",
+                                  "a radio", "--until", "2099-12-31", "--margin", "3 %"};
+  expect_refused(program(accept), {"2 limits fail; expected --limit", "frame latency mean <= 1 us",
+                                   "L1 peak <= 1 kB"});
+  accept.insert(accept.end(), {"--limit", "L1 peek <= 1 kB"});
+  expect_refused(program(accept), {"--limit 'L1 peek", "did you mean 'L1 peak <= 1 kB'?"});
+  accept.back() = "L1 peak <= 1 kB";
+  accept.insert(accept.end(), {"--limit", "frame latency mean <= 1 us"});
+  const ProgramResult accepted = program(accept);
+  ASSERT_EQ(accepted.status, 0) << accepted.err;
+  expect_holds(accepted.out, {"bound: ", " us\n", " kB\n"});
+  const std::string file = write("accepted2.yaml", accepted.out);
+  const ProgramResult passes = program({"check", path("run"), "--budget", file});
+  EXPECT_EQ(passes.status, 0) << passes.out;
+  expect_holds(passes.out, {"accepted up to "});
+  const std::vector<std::string> slower{
+      "check", path("run"), "--budget", file, "--all", "-p", "isa.ops.int_alu.issue=1.5"};
+  const ProgramResult fails = program(slower);
+  EXPECT_EQ(fails.status, 1) << fails.out;
+  expect_holds(fails.out, {"was accepted up to ", " only: a radio"});
+}
+
+/// Another clock is named as what it is, also without a baseline: the chip of the recording is one.
+TEST_F(Check, NamesTheClockThatMadeItLate) {
+  const std::string tight =
+      write("late.yaml", "budgets:\n  - limits: [frame latency mean <= 1 us]\n");
+  const ProgramResult slow =
+      program({"check", path("run"), "--budget", tight, "--all", "-p", "cluster.clock=150MHz"});
+  EXPECT_EQ(slow.status, 1);
+  expect_holds(slow.out, {"another clock +", " ms"});
+  EXPECT_EQ(slow.out.find("kcycles of a frame"), std::string::npos) << slow.out;
+  const std::size_t why = slow.out.find("why");
+  ASSERT_NE(why, std::string::npos) << slow.out;
+  EXPECT_EQ(slow.out.find(" -", why) == std::string::npos ||
+                slow.out.find(" ms", slow.out.find(" -", why)) == std::string::npos,
+            true)
+      << "a reason whose sign opposes the miss: " << slow.out;
+}
+
 TEST_F(Check, AWarningDoesNotFail) {
   const std::string warn = write(
       "warn.yaml", "budgets:\n  - limits:\n      - { limit: L1 peak <= 1 kB, level: warn }\n");

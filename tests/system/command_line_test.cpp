@@ -17,7 +17,7 @@
 #include "tests/support/scratch.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/run/flight_cache.h"
-#include "tools/app/run/run_request.h"
+#include "tools/app/run/run_options.h"
 
 namespace leviosim::tools {
 namespace {

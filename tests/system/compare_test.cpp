@@ -5,7 +5,11 @@
 #include <random>
 
 #include "tests/support/program_suite.h"
+#include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/comparison_report.h"
+#include "tools/app/comparison/comparison_summary.h"
+#include "tools/app/comparison/comparison_words.h"
 #include "tools/app/record/record.h"
 #include "tools/app/run/record_source.h"
 #include "tools/app/table/table_files.h"

@@ -2,6 +2,7 @@
 // numbers.
 #include "tools/app/study/feasibility/feasibility.h"
 #include "tools/app/run/simulate.h"
+#include "tools/app/study/feasibility/feasibility_report.h"
 
 #include <gtest/gtest.h>
 

@@ -11,6 +11,7 @@
 #include "tools/app/run/simulate.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/asl_writer.h"
+#include "traces/datasets/euroc_sensors.h"
 #include "traces/datasets/sensor_yaml.h"
 #include "traces/synthesis/synthetic.h"
 #include "traces/trajectories/trajectory_file.h"

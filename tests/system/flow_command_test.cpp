@@ -4,8 +4,10 @@
 #include "platform_models/loader/loader.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
+#include "tools/app/flow/binned_frames.h"
 #include "tools/app/flow/flow.h"
-#include "tools/app/result/summary.h"
+#include "tools/app/flow/flow_report.h"
+#include "tools/app/result/energy_summary.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

@@ -7,7 +7,7 @@
 
 #include "sim/outputs/file_system.h"
 #include "tests/support/run_program.h"
-#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/screen.h"
 #include "tools/app/record/record.h"
 #include "tools/app/table/terminal_table.h"
 #include "traces/synthesis/synthetic.h"

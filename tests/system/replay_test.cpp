@@ -1,5 +1,9 @@
 // A replay on the chip of the recording is the run; on another chip it is what a live run there
 // would be as long as the algorithm sees the same, and says so where it does not.
+#include "tools/app/run/replay.h"
+#include "tools/app/run/recording_source.h"
+#include "tools/app/run/replay_report.h"
+#include "tools/app/run/run_observer.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/trace_source.h"
 
@@ -12,7 +16,7 @@
 #include "tools/app/report/tables.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_tables.h"
-#include "tools/app/run/workload.h"
+#include "tools/app/run/workload_options.h"
 #include "traces/synthesis/synthetic.h"
 #include "workload/vio/profile.h"
 

@@ -11,6 +11,7 @@
 #include "tools/app/html_report/page.h"
 #include "tools/app/record/json_reader.h"
 #include "tools/app/record/record.h"
+#include "tools/app/table/table_files.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

@@ -7,8 +7,10 @@
 #include "platform_models/loader/variants.h"
 #include "sim/soc/job_timer.h"
 #include "tests/traces/test_folder.h"
+#include "tools/app/run/run_observer.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/validation/calibration/calibration.h"
+#include "tools/app/validation/paper_stages.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

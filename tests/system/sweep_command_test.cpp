@@ -12,8 +12,9 @@
 
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
+#include "tools/app/run/replay.h"
 #include "tools/app/run/simulate.h"
-#include "tools/app/run/trace_source.h"
+#include "tools/app/study/sweep/pareto_front.h"
 #include "tools/app/study/sweep/sweep_store.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/synthetic.h"

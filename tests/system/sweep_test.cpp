@@ -6,7 +6,10 @@
 #include <set>
 
 #include "tests/traces/test_folder.h"
+#include "tools/app/study/sweep/pareto_front.h"
+#include "tools/app/study/sweep/plan.h"
 #include "tools/app/study/sweep/points.h"
+#include "tools/app/study/sweep/sweep_inputs.h"
 #include "tools/app/study/sweep/sweep_store.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/synthetic.h"

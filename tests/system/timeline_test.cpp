@@ -6,7 +6,9 @@
 #include "tests/tools/timeline_checks.h"
 #include "tools/app/record/statistics.h"
 #include "tools/app/run/simulate.h"
+#include "tools/app/timeline/perfetto_timeline.h"
 #include "tools/app/timeline/requested_timeline.h"
+#include "tools/app/timeline/timeline_collector.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {

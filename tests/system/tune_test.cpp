@@ -3,9 +3,12 @@
 
 #include <algorithm>
 
-#include "sim/energy/model.h"
+#include "sim/energy/supply.h"
 #include "tests/support/run_program.h"
+#include "tools/app/study/tune/tune_plan.h"
+#include "tools/app/study/tune/tune_report.h"
 #include "tools/app/study/tune/tuning.h"
+#include "tools/app/table/table_files.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,5 +1,5 @@
 // Parameters of the workload on the command line.
-#include "tools/app/run/workload.h"
+#include "tools/app/run/workload_options.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Accuracy as text: which lengths get a row.
-#include "tools/app/report/run_summary.h"
+#include "tools/app/report/accuracy_text.h"
 
 #include <gtest/gtest.h>
 

@@ -10,6 +10,9 @@
 #include "tests/tools/junit_schema.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/budget/check.h"
+#include "tools/app/budget/check_for_ci.h"
+#include "tools/app/budget/check_report.h"
+#include "tools/app/budget/first_budget.h"
 #include "tools/app/budget/gate.h"
 #include "tools/app/table/terminal_table.h"
 

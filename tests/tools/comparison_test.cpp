@@ -1,6 +1,9 @@
 // The arithmetic of comparisons on records made by hand.
 #include "tools/app/comparison/comparison.h"
 #include "sim/work/op.h"
+#include "tools/app/comparison/comparison_report.h"
+#include "tools/app/comparison/comparison_words.h"
+#include "tools/app/comparison/stage_difference.h"
 
 #include <gtest/gtest.h>
 

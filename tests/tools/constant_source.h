@@ -6,6 +6,7 @@
 
 #include "sim/work/op.h"
 #include "tests/sim/chip_test_config.h"
+#include "tools/app/run/run_source.h"
 #include "tools/app/run/simulate.h"
 
 namespace leviosim::tools::testing {

@@ -1,6 +1,6 @@
 // Energy of a run: every joule once, per frame, over time, at other points, and in the files.
 #include "sim/work/op.h"
-#include "tools/app/result/summary.h"
+#include "tools/app/result/energy_summary.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include "tests/sim/energy_test_config.h"
 #include "tests/tools/example_run.h"
 #include "tools/app/record/statistics.h"
+#include "tools/app/report/energy_tables.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_tables.h"

@@ -5,6 +5,11 @@
 #include <set>
 
 #include "tools/app/study/flights/benchmark.h"
+#include "tools/app/study/flights/benchmark_files.h"
+#include "tools/app/study/flights/benchmark_report.h"
+#include "tools/app/study/flights/flight_plan.h"
+#include "tools/app/study/flights/piece_figures.h"
+#include "tools/app/table/table_files.h"
 #include "traces/datasets/rng.h"
 
 namespace leviosim::tools {

@@ -10,6 +10,8 @@
 #include "sim/base/input_file.h"
 #include "tests/support/scratch.h"
 #include "tools/app/history/history.h"
+#include "tools/app/history/history_report.h"
+#include "tools/app/history/trends.h"
 #include "tools/app/html_report/page.h"
 
 namespace leviosim::tools {

@@ -4,7 +4,11 @@
 #include "sim/base/error.h"
 #include "tests/tools/example_run.h"
 #include "tests/traces/test_folder.h"
+#include "tools/app/html_report/key_figures.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_option.h"
+#include "tools/app/html_report/run_data.h"
+#include "tools/app/html_report/study_page.h"
 #include "tools/app/record/statistics.h"
 #include "tools/app/result/verdict.h"
 

@@ -1,6 +1,7 @@
 // Statistics of images where what they should be is known: pictures with noise, blur and light that
 // were put into them, points at known depths, and a drawn flight.
 #include "tools/app/images/image_statistics.h"
+#include "tools/app/images/picture_figures.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 
 #include "tests/traces/test_folder.h"
 #include "tools/app/images/feature_tracks.h"
+#include "tools/app/images/track_geometry.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/synthetic.h"

@@ -1,4 +1,5 @@
 // Exact ties on the Pareto front: what is as good in everything is not worse.
+#include "tools/app/study/sweep/pareto_front.h"
 #include "tools/app/study/sweep/sweep_store.h"
 
 #include <gtest/gtest.h>

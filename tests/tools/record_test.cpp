@@ -108,12 +108,12 @@ TEST(Record, HasOneReaderAndOneWriter) {
   EXPECT_EQ(files_with(R"re(\.at\("(statistics|facts|verdicts|stages|parts)"\))re"),
             Files{"app/record/record.cpp"});
   EXPECT_EQ(files_with(R"re(json\["(statistics|verdicts|facts|parts)"\] = )re"),
-            (Files{"app/record/record.cpp", "app/html_report/page_json.cpp"}))
+            (Files{"app/record/record.cpp", "app/html_report/run_data.cpp"}))
       << "the scripts of a page get facts";
   EXPECT_EQ(files_with("parse_record\\(|record_of_json\\("),
             (Files{"app/record/record.h", "app/record/record.cpp", "app/run/run_folder.cpp",
                    "app/budget/gate.h", "app/budget/gate.cpp", "app/history/history.cpp",
-                   "app/study/engine.cpp", "app/study/sweep/sweep_store.cpp"}))
+                   "app/study/outcome_cache.cpp", "app/study/sweep/sweep_store.cpp"}))
       << "a file that holds records";
 }
 

@@ -1,5 +1,5 @@
 // How runs are set up that are compared with the paper.
-#include "tools/app/validation/validation.h"
+#include "tools/app/validation/as_released.h"
 
 #include <gtest/gtest.h>
 

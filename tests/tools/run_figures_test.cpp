@@ -11,6 +11,7 @@
 #include "tests/tools/statistic_values.h"
 #include "tools/app/record/statistics.h"
 #include "tools/app/report/tables.h"
+#include "tools/app/result/camera_figures.h"
 #include "tools/app/result/summary.h"
 
 namespace leviosim::tools {

@@ -1,5 +1,5 @@
 // What commands print fits a screen: details give way, the longest first, and what came out stays.
-#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/screen.h"
 
 #include <gtest/gtest.h>
 

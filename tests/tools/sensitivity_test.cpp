@@ -1,6 +1,7 @@
 // Sweeps over tiny jobs whose times are closed formulas.
 #include "tools/app/study/sensitivity/sensitivity.h"
 #include "sim/work/op.h"
+#include "tools/app/study/sensitivity/sensitivity_report.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,6 +15,8 @@
 #include "sim/soc/job_timer.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/range_bands.h"
+#include "tools/app/run/time_bands.h"
+#include "tools/app/table/table_files.h"
 
 namespace leviosim::tools {
 namespace {

@@ -6,7 +6,12 @@
 #include "platform_models/loader/loader.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/ablate/ablation.h"
+#include "tools/app/study/ablate/ablation_report.h"
+#include "tools/app/study/ablate/published_accuracy.h"
+#include "tools/app/study/systems/predictions.h"
+#include "tools/app/study/systems/published_systems.h"
 #include "tools/app/study/systems/systems_report.h"
+#include "tools/app/table/table_files.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::tools {
@@ -79,9 +84,10 @@ std::vector<SystemRow> example_systems() {
 
 TEST(SystemsReport, PredictionsStandBesideTheirSystems) {
   const std::string table = systems_table(example_systems());
-  for (const char* part : {"Navion, 2019", "   0.1  an ASIC", "< 0.4", "levio on gap9", "30.2 (20.2–40.2)",
-                           "1.51 (1.51–1.51)", "29.9", "levio on gap9 as though it fitted: 7 kB",
-                           "Jetson Xavier NX", "BotVIO: Wei et al. 2025"})
+  for (const char* part :
+       {"Navion, 2019", "   0.1  an ASIC", "< 0.4", "levio on gap9", "30.2 (20.2–40.2)",
+        "1.51 (1.51–1.51)", "29.9", "levio on gap9 as though it fitted: 7 kB", "Jetson Xavier NX",
+        "BotVIO: Wei et al. 2025"})
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in:\n" << table;
   const std::string csv = csv_text(systems_rows(example_systems()));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 4 + 3 + 3 + 2);

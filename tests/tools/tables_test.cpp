@@ -8,6 +8,7 @@
 
 #include "tests/support/text_lines.h"
 #include "tests/tools/example_run.h"
+#include "tools/app/report/run_summary.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/table/terminal_table.h"
 

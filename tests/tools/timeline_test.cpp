@@ -1,6 +1,10 @@
 // The timeline of work that is known: what lies where, what is joined, and what it costs.
 #include "sim/work/op.h"
+#include "tools/app/timeline/joined_steps.h"
+#include "tools/app/timeline/perfetto_timeline.h"
 #include "tools/app/timeline/requested_timeline.h"
+#include "tools/app/timeline/timeline_collector.h"
+#include "tools/app/timeline/timeline_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +15,9 @@
 #include "tests/tools/timeline_checks.h"
 #include "tests/tools/well_formed.h"
 #include "tests/traces/test_folder.h"
-#include "tools/app/timeline/core_slices.h"
+#include "tools/app/timeline/protobuf_writer.h"
 #include "tools/app/timeline/track_events.h"
+#include "tools/app/timeline/waits.h"
 
 namespace leviosim::tools {
 namespace {

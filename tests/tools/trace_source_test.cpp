@@ -1,4 +1,5 @@
-// A source of recorded work refuses memories that the work does not fit in, and begins what can begin.
+// A source of recorded work refuses memories that the work does not fit in, and begins what can
+// begin.
 #include "tools/app/run/trace_source.h"
 
 #include <gtest/gtest.h>

@@ -5,6 +5,7 @@
 
 #include "tests/tools/example_run.h"
 #include "tools/app/record/statistics.h"
+#include "tools/app/report/run_summary.h"
 #include "tools/app/report/tables.h"
 
 namespace leviosim::tools {

@@ -1,4 +1,4 @@
-#include "traces/trajectories/evaluation.h"
+#include "traces/trajectories/association.h"
 
 #include <gtest/gtest.h>
 

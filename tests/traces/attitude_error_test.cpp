@@ -1,4 +1,4 @@
-#include "traces/trajectories/trajectory_errors.h"
+#include "traces/trajectories/attitude_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "tests/traces/test_folder.h"
-#include "traces/datasets/asl_writer.h"
+#include "traces/datasets/euroc_sensors.h"
 
 namespace leviosim::traces {
 namespace {

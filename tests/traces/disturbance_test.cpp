@@ -7,7 +7,7 @@
 
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
-#include "traces/datasets/image_preparation.h"
+#include "traces/datasets/image_source.h"
 
 namespace leviosim::traces {
 namespace {

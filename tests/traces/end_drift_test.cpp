@@ -1,5 +1,5 @@
 // Drift of estimates whose drift is known.
-#include "traces/trajectories/trajectory_errors.h"
+#include "traces/trajectories/end_drift.h"
 
 #include <gtest/gtest.h>
 

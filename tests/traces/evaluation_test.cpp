@@ -1,4 +1,5 @@
 #include "traces/trajectories/evaluation.h"
+#include "traces/trajectories/alignment.h"
 
 #include <gtest/gtest.h>
 

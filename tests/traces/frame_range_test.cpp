@@ -1,4 +1,4 @@
-#include "traces/datasets/dataset.h"
+#include "traces/datasets/frame_range.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "traces/synthesis/hall.h"
+#include "traces/synthesis/hall_layout.h"
 
 #include <gtest/gtest.h>
 

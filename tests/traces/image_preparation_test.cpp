@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "tests/traces/test_folder.h"
-#include "traces/datasets/asl_writer.h"
+#include "traces/datasets/euroc_sensors.h"
 #include "traces/datasets/rng.h"
 
 namespace leviosim::traces {

@@ -1,4 +1,5 @@
 // Reading, undistorting and decimating, against OpenCV and the published numbers.
+#include "traces/datasets/image_source.h"
 #include "traces/datasets/image_preparation.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@
 #include "tests/support/image_files.h"
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
-#include "traces/datasets/asl_writer.h"
+#include "traces/datasets/euroc_sensors.h"
 #include "traces/datasets/image_file.h"
 
 namespace leviosim::traces {

@@ -1,4 +1,5 @@
 #include "traces/datasets/dataset.h"
+#include "traces/datasets/imu_samples.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 
-#include "traces/synthesis/motion.h"
+#include "traces/synthesis/imu_synthesis.h"
 
 namespace leviosim::traces::testing {
 

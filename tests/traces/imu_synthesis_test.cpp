@@ -1,4 +1,5 @@
 // Ideal readings must integrate back to the path; errors must have the statistics of the model.
+#include "traces/synthesis/imu_synthesis.h"
 #include "traces/synthesis/motion.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +7,7 @@
 #include <cmath>
 
 #include "tests/traces/imu_integration.h"
-#include "traces/datasets/asl_writer.h"
+#include "traces/datasets/euroc_sensors.h"
 
 namespace leviosim::traces {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "traces/datasets/asl_writer.h"
+#include "traces/datasets/euroc_sensors.h"
 #include "traces/synthesis/world.h"
 
 namespace leviosim::traces {

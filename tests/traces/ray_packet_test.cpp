@@ -1,5 +1,6 @@
 // What a packet of rays meets is what each ray meets alone, and boxes project into their bounds.
-#include "traces/synthesis/renderer.h"
+#include "traces/synthesis/ray_packet.h"
+#include "traces/synthesis/screen_bounds.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,6 @@
 // The motion behind sampled poses against the motion that was sampled.
+#include "traces/synthesis/recorded_motion.h"
+#include "traces/synthesis/imu_synthesis.h"
 #include "traces/synthesis/motion.h"
 
 #include <gtest/gtest.h>

@@ -11,8 +11,10 @@
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/dataset.h"
+#include "traces/datasets/frame_range.h"
 #include "traces/datasets/image_file.h"
-#include "traces/datasets/image_preparation.h"
+#include "traces/datasets/image_source.h"
+#include "traces/datasets/imu_samples.h"
 #include "traces/datasets/rng.h"
 #include "traces/synthesis/hall.h"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "traces/datasets/asl_writer.h"
+#include "traces/datasets/euroc_sensors.h"
 #include "traces/datasets/rng.h"
 
 namespace leviosim::traces {

@@ -1,5 +1,5 @@
 // Scales of estimates whose scale is known, window by window.
-#include "traces/trajectories/trajectory_errors.h"
+#include "traces/trajectories/scale_windows.h"
 
 #include <gtest/gtest.h>
 

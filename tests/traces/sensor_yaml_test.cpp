@@ -5,6 +5,7 @@
 
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_writer.h"
+#include "traces/datasets/euroc_sensors.h"
 
 namespace leviosim::traces {
 namespace {

@@ -1,4 +1,4 @@
-#include "traces/synthesis/motion.h"
+#include "traces/synthesis/smoothing_spline.h"
 
 #include <gtest/gtest.h>
 

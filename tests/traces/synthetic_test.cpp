@@ -11,7 +11,8 @@
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/dataset.h"
-#include "traces/datasets/image_preparation.h"
+#include "traces/datasets/image_source.h"
+#include "traces/datasets/imu_samples.h"
 
 namespace leviosim::traces {
 namespace {

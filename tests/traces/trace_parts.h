@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/work/op.h"
+#include "traces/work_traces/bytes.h"
 #include "traces/work_traces/section_file.h"
 #include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_trace.h"

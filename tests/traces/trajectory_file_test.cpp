@@ -1,4 +1,5 @@
 #include "traces/trajectories/trajectory_file.h"
+#include "traces/trajectories/kitti_files.h"
 
 #include <gtest/gtest.h>
 

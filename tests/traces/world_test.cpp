@@ -1,4 +1,5 @@
 #include "traces/synthesis/world.h"
+#include "traces/synthesis/texture.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "platform_models/loader/loader.h"
-#include "tools/app/validation/microbench/bench.h"
+#include "tools/app/validation/microbench/board_kernels.h"
+#include "tools/app/validation/microbench/kernel_job.h"
+#include "tools/app/validation/microbench/library_kernels.h"
+#include "tools/app/validation/microbench/microbench_row.h"
 
 namespace leviosim::tools {
 namespace {

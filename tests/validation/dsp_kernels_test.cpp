@@ -15,7 +15,11 @@
 #include "tests/validation/int8_product.h"
 #include "tests/validation/int8_product_code.h"
 #include "tools/app/validation/microbench/bench.h"
+#include "tools/app/validation/microbench/kernel_job.h"
+#include "tools/app/validation/microbench/library_kernels.h"
 #include "tools/app/validation/microbench/library_programs.h"
+#include "tools/app/validation/microbench/microbench_report.h"
+#include "tools/app/validation/microbench/microbench_row.h"
 #include "workload/levio/geometry/essential_ransac.h"
 
 namespace leviosim::tools {

@@ -12,7 +12,7 @@
 #include "sim/energy/model.h"
 #include "sim/work/op.h"
 #include "tests/validation/energy_reference.h"
-#include "tools/app/result/summary.h"
+#include "tools/app/result/energy_summary.h"
 #include "tools/app/run/simulate.h"
 #include "traces/synthesis/synthetic.h"
 

@@ -4,6 +4,7 @@
 #include "sim/work/op.h"
 #include "tests/tools/example_run.h"
 #include "tools/app/validation/frame_log.h"
+#include "workload/vio/stages.h"
 
 namespace leviosim::tools::testing {
 

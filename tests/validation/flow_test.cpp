@@ -8,6 +8,7 @@
 #include "platform_models/loader/loader.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/flow/flow.h"
+#include "tools/app/flow/flow_report.h"
 #include "tools/app/run/simulate.h"
 
 namespace leviosim::tools {

@@ -7,7 +7,10 @@
 
 #include "platform_models/loader/loader.h"
 #include "sim/base/error.h"
-#include "tools/app/validation/microbench/bench.h"
+#include "tools/app/validation/microbench/board_kernels.h"
+#include "tools/app/validation/microbench/microbench_report.h"
+#include "tools/app/validation/microbench/microbench_row.h"
+#include "tools/app/validation/microbench/reference_rows.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,6 +1,6 @@
 // Distributions of a run's inputs, and of the iterations of its hypotheses.
 #include "sim/work/op.h"
-#include "tools/app/validation/validation.h"
+#include "tools/app/validation/distributions.h"
 
 #include <gtest/gtest.h>
 

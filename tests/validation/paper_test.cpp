@@ -6,9 +6,11 @@
 
 #include "platform_models/loader/loader.h"
 #include "tests/traces/test_folder.h"
+#include "tools/app/run/run_options.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/simulate.h"
-#include "tools/app/run/workload.h"
+#include "tools/app/run/workload_options.h"
+#include "tools/app/validation/as_released.h"
 #include "tools/app/validation/calibration/calibration.h"
 #include "tools/app/validation/validation.h"
 #include "workload/vio/profile.h"

@@ -1,5 +1,6 @@
 // Means of stages on either path, and weighed as the paper's frames are.
 #include "tools/app/validation/frame_log.h"
+#include "tools/app/validation/paths.h"
 
 #include <gtest/gtest.h>
 

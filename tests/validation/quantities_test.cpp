@@ -4,7 +4,12 @@
 
 #include "tests/traces/test_folder.h"
 #include "tests/validation/example_log.h"
+#include "tools/app/validation/distributions.h"
+#include "tools/app/validation/inputs.h"
+#include "tools/app/validation/paper_stages.h"
+#include "tools/app/validation/quantities.h"
 #include "tools/app/validation/validation.h"
+#include "tools/app/validation/validation_report.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::tools {

@@ -48,7 +48,8 @@ TEST(ValidationReferences, RefusesFaultsWithFileAndLine) {
   refuse("a,1,x,1,1,missed: why,s\n", {"guard", "more than the tolerance"});
   refuse("a,1,x,1,2 %,missed: why,s\n", {"both"});
   refuse("a,1,x,1,,met,s\na,1,x,1,,met,s\n", {"f.csv line 4", "'a' is there twice"});
-  expect_input_error([] { parse_references("f.csv", "name,value\n"); }, {"f.csv line 1", "2 columns"});
+  expect_input_error([] { parse_references("f.csv", "name,value\n"); },
+                     {"f.csv line 1", "2 columns"});
   expect_input_error([] { parse_references("f.csv", ""); }, {"f.csv", "titles"});
 }
 

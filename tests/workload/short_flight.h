@@ -12,9 +12,10 @@
 #include <vector>
 
 #include "sim/work/machine.h"
-#include "traces/datasets/asl_writer.h"
 #include "traces/datasets/camera_model.h"
+#include "traces/datasets/euroc_sensors.h"
 #include "traces/datasets/image_preparation.h"
+#include "traces/synthesis/imu_synthesis.h"
 #include "traces/synthesis/motion.h"
 #include "traces/synthesis/renderer.h"
 #include "traces/synthesis/world.h"

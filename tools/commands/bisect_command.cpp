@@ -1,6 +1,4 @@
 // leviosim bisect: whether the commit that is checked out meets a budget, as `git bisect run` asks.
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -10,10 +8,12 @@
 #include "sim/base/error.h"
 #include "tools/app/budget/check.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/host.h"
-#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/child_programs.h"
+#include "tools/app/cli/exit_status.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/record/measured.h"
 #include "tools/app/run/record_source.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

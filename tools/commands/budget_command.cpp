@@ -1,6 +1,4 @@
 // leviosim budget: makes baselines and first budgets.
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -9,13 +7,16 @@
 
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
 #include "tools/app/budget/budget.h"
-#include "tools/app/budget/check.h"
+#include "tools/app/budget/budget_edits.h"
+#include "tools/app/budget/day.h"
+#include "tools/app/budget/first_budget.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/record/record.h"
 #include "tools/app/run/record_source.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {
@@ -26,6 +27,7 @@ struct BudgetOptions : RecordOptions {
   GateOptions gate;
   std::string margin = "5 %";
   std::string slack = "2 %";
+  std::vector<std::string> limits;
   std::string reason;
   std::string until;
 };
@@ -43,8 +45,11 @@ std::string edited(const CLI::App& command, const BudgetOptions& options) {
   if (parse_day("--until", options.until) < today())
     throw InputError(
         fmt::format("--until '{}': is over; expected {} or a later day", options.until, today()));
-  return with_accepted(text, gate.check(read_record(options.run, options)), options.reason,
-                       options.until);
+  return with_accepted(text, gate.check(read_record(options.run, options)),
+                       {.limits = options.limits,
+                        .margin = parse_share("--margin", options.margin),
+                        .reason = options.reason,
+                        .until = options.until});
 }
 
 void run(const CLI::App& command, const BudgetOptions& options) {
@@ -81,8 +86,14 @@ Command add_budget_command(CLI::App& app, const Words&) {
   command->add_option("RUN", options->run, "run folder, or a work trace to replay");
   add_gate_options(*command, options->gate);
   const TextOptions add{*command};
-  add("--margin", options->margin, "PERCENT", "init: what limits leave [5 %]");
+  add("--margin", options->margin, "PERCENT",
+      "init: what limits leave; accept: what the new bound leaves [5 %]");
   add("--slack", options->slack, "PERCENT", "tighten: what limits leave at most [2 %]");
+  command
+      ->add_option("--limit", options->limits,
+                   "accept: the limit that may be missed, by its title; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   add("--reason", options->reason, "TEXT", "accept: why");
   add("--until", options->until, "DATE", "accept: the last day");
   add_record_options(*command, *options);

@@ -1,13 +1,13 @@
 // `leviosim calibrate`: what a fit to the paper would ask for.
-#include "tools/commands/commands.h"
-
 #include <CLI/CLI.hpp>
 
 #include <memory>
 
+#include "tools/app/cli/printout.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/validation/as_released.h"
 #include "tools/app/validation/calibration/calibration.h"
-#include "tools/app/validation/validation.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,6 +1,4 @@
 // leviosim compare: what differs between runs, and why.
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -8,11 +6,17 @@
 
 #include "sim/base/error.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
+#include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/comparison_report.h"
+#include "tools/app/comparison/two_programs.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_option.h"
 #include "tools/app/record/measured.h"
 #include "tools/app/run/record_source.h"
-#include "tools/app/study/sweep/points.h"
+#include "tools/app/study/sweep/point_name.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,6 +1,4 @@
 // leviosim demo: both profiles on the synthetic flight, and a what-if, on one screen.
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -9,15 +7,23 @@
 #include <filesystem>
 #include <memory>
 
-#include "sim/base/text.h"
+#include "sim/base/printable.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/printout.h"
+#include "tools/app/cli/progress_line.h"
+#include "tools/app/cli/screen.h"
+#include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_option.h"
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/energy_summary.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/study/whatif/whatif.h"
+#include "tools/app/study/whatif/whatif_report.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

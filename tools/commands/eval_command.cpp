@@ -1,6 +1,4 @@
 // `leviosim eval`: how far an estimated trajectory lies from the ground truth.
-#include "tools/commands/commands.h"
-
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
@@ -16,12 +14,17 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/printable.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/record/statistics.h"
-#include "tools/app/report/run_summary.h"
+#include "tools/app/report/accuracy_text.h"
 #include "tools/app/table/terminal_table.h"
+#include "tools/commands/commands.h"
+#include "traces/trajectories/alignment.h"
+#include "traces/trajectories/association.h"
+#include "traces/trajectories/attitude_errors.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory_errors.h"
 #include "traces/trajectories/trajectory_file.h"

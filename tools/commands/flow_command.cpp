@@ -1,16 +1,17 @@
 // `leviosim flow`: the optical flow of PX4FLOW on a chip.
-#include "tools/commands/commands.h"
-
 #include <CLI/CLI.hpp>
 
 #include <memory>
 
 #include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/flow/flow.h"
+#include "tools/app/flow/flow_report.h"
 #include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/run_tables.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

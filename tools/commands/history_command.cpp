@@ -1,6 +1,4 @@
 // leviosim history: runs over time, by commit, in a file.
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -9,13 +7,16 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
+#include "sim/base/printable.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/host.h"
-#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/child_programs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/history/history.h"
-#include "tools/app/html_report/page.h"
+#include "tools/app/history/history_report.h"
+#include "tools/app/html_report/report_option.h"
 #include "tools/app/run/record_source.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

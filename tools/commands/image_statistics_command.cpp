@@ -1,6 +1,4 @@
 // `leviosim image-statistics`: what the pictures of recordings are like, side by side.
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -9,12 +7,14 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/text.h"
-#include "tools/app/cli/outputs.h"
-#include "tools/app/cli/terminal.h"
+#include "sim/base/printable.h"
+#include "tools/app/cli/printout.h"
+#include "tools/app/cli/progress_line.h"
 #include "tools/app/images/image_statistics.h"
 #include "tools/app/record/statistic_list.h"
-#include "tools/app/run/run_request.h"
+#include "tools/app/run/run_options.h"
+#include "tools/app/table/table_files.h"
+#include "tools/commands/commands.h"
 #include "traces/recordings/recording.h"
 
 namespace leviosim::tools {

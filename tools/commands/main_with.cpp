@@ -1,7 +1,9 @@
 #include "tools/commands/main_with.h"
 
-#include <fmt/core.h>
 #include <unistd.h>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
@@ -13,13 +15,11 @@
 #include <new>
 #include <utility>
 
-#include <CLI/CLI.hpp>
-
 #include "sim/base/error.h"
-
+#include "sim/base/interruption.h"
+#include "tools/app/cli/exit_status.h"
 #include "tools/app/cli/host.h"
-#include "tools/app/cli/outputs.h"
-#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/screen.h"
 #include "tools/app/cli/version.h"
 #include "tools/commands/commands.h"
 

@@ -1,6 +1,4 @@
 // leviosim microbench: small programs on a chip beside what is known of the real one.
-#include "tools/commands/commands.h"
-
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -8,11 +6,20 @@
 #include <string_view>
 
 #include "platform_models/loader/loader.h"
-#include "platform_models/loader/schema.h"
-#include "sim/base/text.h"
+#include "platform_models/loader/units.h"
+#include "sim/base/printable.h"
+#include "tools/app/cli/exit_status.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/record/statistic_list.h"
-#include "tools/app/validation/microbench/bench.h"
+#include "tools/app/table/table_files.h"
+#include "tools/app/validation/microbench/board_kernels.h"
+#include "tools/app/validation/microbench/kernel_job.h"
+#include "tools/app/validation/microbench/library_kernels.h"
+#include "tools/app/validation/microbench/microbench_report.h"
+#include "tools/app/validation/microbench/microbench_row.h"
+#include "tools/app/validation/microbench/unit_benches.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

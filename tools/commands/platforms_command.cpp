@@ -1,6 +1,4 @@
 // `leviosim platforms`: which chips there are, and what is known about one.
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -13,20 +11,29 @@
 #include <optional>
 
 #include "platform_models/loader/loader.h"
+#include "platform_models/loader/new_platform.h"
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
+#include "sim/base/printable.h"
+#include "sim/energy/area.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/record/statistic_list.h"
+#include "tools/app/report/area_table.h"
 #include "tools/app/report/tables.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/workload.h"
+#include "tools/app/run/workload_options.h"
 #include "tools/app/study/feasibility/feasibility.h"
+#include "tools/app/study/feasibility/feasibility_report.h"
 #include "tools/app/study/study.h"
+#include "tools/app/study/systems/predictions.h"
+#include "tools/app/study/systems/published_systems.h"
 #include "tools/app/study/systems/systems_report.h"
 #include "tools/app/table/terminal_table.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

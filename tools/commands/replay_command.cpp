@@ -1,6 +1,4 @@
 // `leviosim replay`: a recorded run on another chip.
-#include "tools/commands/commands.h"
-
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
@@ -11,13 +9,18 @@
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_option.h"
 #include "tools/app/record/record.h"
+#include "tools/app/run/max_memory.h"
+#include "tools/app/run/replay.h"
+#include "tools/app/run/replay_report.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_printout.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/trace_source.h"
 #include "tools/app/timeline/requested_timeline.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

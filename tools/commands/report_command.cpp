@@ -1,15 +1,16 @@
 // leviosim report: runs as one HTML page, from their folders alone.
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+
 #include <memory>
 
-#include "sim/base/text.h"
-#include "tools/app/cli/outputs.h"
+#include "sim/base/printable.h"
+#include "tools/app/cli/printout.h"
+#include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison.h"
-#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_option.h"
 #include "tools/app/result/verdict.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

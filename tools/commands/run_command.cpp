@@ -1,18 +1,18 @@
 // `leviosim run`: the workload on a chip, or natively, over recorded or synthetic data.
-#include "tools/commands/commands.h"
-
 #include <CLI/CLI.hpp>
 
 #include <memory>
 
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/outputs.h"
-#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_option.h"
 #include "tools/app/record/record.h"
+#include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_printout.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/trace_source.h"
 #include "tools/app/timeline/requested_timeline.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,6 +1,4 @@
 // `leviosim synth`: the synthetic flight as an ASL folder.
-#include "tools/commands/commands.h"
-
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
@@ -8,10 +6,11 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/text.h"
-#include "tools/app/cli/outputs.h"
+#include "sim/base/printable.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/run/flight_cache.h"
-#include "tools/app/run/run_request.h"
+#include "tools/app/run/run_options.h"
+#include "tools/commands/commands.h"
 #include "traces/synthesis/place.h"
 #include "traces/synthesis/rendered_flight.h"
 

@@ -1,18 +1,19 @@
 // `leviosim trace info FILE` and `leviosim trace check FILE`: what a work trace holds, and whether
 // all of it can be read.
-#include "tools/commands/commands.h"
-
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/text.h"
-#include "tools/app/cli/outputs.h"
+#include "sim/base/nearest_name.h"
+#include "sim/base/printable.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/record/statistic_list.h"
-#include "tools/app/run/run_request.h"
-#include "tools/app/run/trace_source.h"
+#include "tools/app/run/max_memory.h"
+#include "tools/app/run/replay.h"
+#include "tools/app/run/trace_report.h"
+#include "tools/commands/commands.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,13 +1,12 @@
 // `leviosim trajectory`: a trajectory in the format of other programs, on stdout.
-#include "tools/commands/commands.h"
-
 #include <CLI/CLI.hpp>
 
 #include <memory>
 #include <string>
 
 #include "sim/base/error.h"
-#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
+#include "tools/commands/commands.h"
 #include "traces/trajectories/trajectory_file.h"
 
 namespace leviosim::tools {

@@ -1,17 +1,20 @@
 // `leviosim validate`: the paper's tables beside those of a run.
-#include "tools/commands/commands.h"
-
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include <memory>
 #include <utility>
 
-#include "sim/base/text.h"
+#include "sim/base/printable.h"
+#include "tools/app/cli/exit_status.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
+#include "tools/app/validation/as_released.h"
 #include "tools/app/validation/validation.h"
+#include "tools/app/validation/validation_report.h"
+#include "tools/commands/commands.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::tools {

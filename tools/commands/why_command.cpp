@@ -7,14 +7,15 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/printable.h"
 #include "tools/app/cli/host.h"
-#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/record/record.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/run/max_memory.h"
 #include "tools/app/run/record_source.h"
+#include "tools/app/run/replay.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/trace_source.h"
 #include "tools/app/table/terminal_table.h"
 #include "tools/app/why/late_frame.h"
 #include "tools/commands/commands.h"

@@ -1,17 +1,16 @@
 // `leviosim workload`: profiles of the workload, and its parameters with unit, range and value.
-#include "tools/commands/commands.h"
-
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include <memory>
 
 #include "sim/base/csv.h"
-#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/record/statistic_list.h"
 #include "tools/app/run/workload.h"
 #include "tools/app/table/table_files.h"
 #include "tools/app/table/terminal_table.h"
+#include "tools/commands/commands.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::tools {

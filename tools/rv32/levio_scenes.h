@@ -4,10 +4,12 @@
 #pragma once
 
 #include "tools/rv32/scene_data.h"
+#include "workload/levio/geometry/eight_point.h"
 #include "workload/levio/geometry/epnp_ransac.h"
 #include "workload/levio/geometry/essential_ransac.h"
 #include "workload/levio/geometry/pose_matrix.h"
 #include "workload/levio/geometry/pose_recovery.h"
+#include "workload/levio/geometry/two_view_point.h"
 #include "workload/levio/optimiser/levio_optimiser.h"
 #include "workload/levio/vision/levio_extractor.h"
 #include "workload/levio/vision/levio_matcher.h"

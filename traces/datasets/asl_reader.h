@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "traces/datasets/dataset.h"
+#include "traces/datasets/imu_model.h"
 
 namespace leviosim::traces {
 

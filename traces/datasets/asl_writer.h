@@ -8,6 +8,7 @@
 
 #include "traces/datasets/camera_model.h"
 #include "traces/datasets/dataset.h"
+#include "traces/datasets/imu_model.h"
 
 namespace leviosim::traces {
 
@@ -22,14 +23,5 @@ std::string format_frames_csv(const std::vector<std::int64_t>& stamps_ns);
 std::string format_imu_csv(const std::vector<ImuSample>& samples);
 /// The 17 columns of EuRoC. Quaternions have w >= 0.
 std::string format_ground_truth_csv(const std::vector<GroundTruthPose>& poses);
-
-// The sensors of the EuRoC MAV dataset, as its public sensor.yaml files state them (Burri et al.
-// 2016; cam0: MT9M034, imu0: ADIS16448).
-
-/// Left camera: 752x480, 20 frames/s.
-CameraModel euroc_cam0();
-
-/// 200 Hz.
-ImuModel euroc_imu0();
 
 }  // namespace leviosim::traces

@@ -11,39 +11,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "traces/datasets/camera_model.h"
 #include "traces/datasets/disturbance.h"
+#include "traces/datasets/frame_range.h"
+#include "traces/datasets/imu_model.h"
 
 namespace leviosim::traces {
-
-// A range of frames "A:B", B exclusive, as users write it on the command line.
-
-struct FrameRange {
-  std::size_t begin = 0;
-  std::size_t end = 0;  ///< exclusive
-};
-
-/// Throws InputError unless `text` is A:B with 0 <= A < B.
-FrameRange parse_frame_range(std::string_view text);
-
-/// Throws InputError, which names `what`, unless the range selects from its `count` frames.
-void check_frame_range(const FrameRange& range, std::size_t count, std::string_view what);
-
-// The noise model of an inertial sensor as in EuRoC's sensor.yaml: white noise on each axis plus a
-// bias that walks at random. Left out: scale factors, axis misalignment, saturation, temperature.
-
-struct ImuModel {
-  double rate_hz = 0;
-  double gyro_noise_density = 0;   ///< [rad/s/√Hz]
-  double gyro_random_walk = 0;     ///< [rad/s²/√Hz]
-  double accel_noise_density = 0;  ///< [m/s²/√Hz]
-  double accel_random_walk = 0;    ///< [m/s³/√Hz]
-};
 
 struct FrameRef {
   std::int64_t t_ns = 0;
@@ -103,21 +80,5 @@ std::vector<std::int64_t> stamps_of(const std::vector<FrameRef>& frames);
 /// What was read, with the frames that were asked for and the disturbance made. Throws InputError
 /// if images are missing or the IMU, where there is one, does not cover the frames.
 Dataset opened(Dataset data, const OpenOptions& options);
-
-// The IMU samples that belong to each frame: those after the previous frame, up to and including
-// the frame itself (10 per frame for 200 Hz and 20 frames/s).
-
-/// The samples with after_ns < t <= up_to_ns.
-std::span<const ImuSample> imu_between(std::span<const ImuSample> samples, std::int64_t after_ns,
-                                       std::int64_t up_to_ns);
-
-/// The batch of frame i of `data`. Before frame 0 it reaches back by one nominal frame period, as
-/// far as there are samples. A batch grows where the camera skipped a frame and may be empty at the
-/// edges of the recording.
-std::span<const ImuSample> imu_batch(const Dataset& data, std::size_t frame);
-
-/// The sample at a time within the recording, interpolated linearly between its neighbours. Throws
-/// InputError outside the recording.
-ImuSample interpolate_imu(std::span<const ImuSample> samples, std::int64_t t_ns);
 
 }  // namespace leviosim::traces

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/rng.h"
 

@@ -17,14 +17,11 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <vector>
 
 #include "traces/datasets/camera_model.h"
-#include "traces/datasets/dataset.h"
 #include "traces/datasets/image_file.h"
 
 namespace leviosim::traces {
@@ -70,40 +67,6 @@ class ImagePreparation {
   using Corner = std::array<std::int16_t, 2>;
   std::vector<Corner> corners_;
   std::vector<std::uint16_t> fractions_;
-};
-
-// The frames of a dataset as the pipeline sees them: read, checked and prepared.
-
-/// 8-bit grey, row by row without padding.
-struct GrayImage {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> pixels;
-  std::int64_t t_ns = 0;
-};
-
-/// Reads and prepares the frames of a dataset. Immutable after construction: read() is a pure
-/// function of the frame's index and may be called from several threads.
-class ImageSource {
- public:
-  /// Throws InputError if the size does not fit.
-  ImageSource(const Dataset& data, ImageSize size);
-
-  std::size_t size() const { return frames_.size(); }
-  const PinholeIntrinsics& intrinsics() const { return preparation_.intrinsics(); }
-
-  /// The prepared image of frame i < size(). Throws InputError, naming image, file and line, if it
-  /// cannot be decoded, has another size than sensor.yaml says, or is not 8-bit grey.
-  GrayImage read(std::size_t i) const;
-
- private:
-  std::vector<std::uint8_t> decode(const FrameRef& frame) const;
-
-  std::filesystem::path frames_csv_;
-  std::vector<FrameRef> frames_;
-  ImageSize full_size_;
-  Disturbance disturbance_;
-  ImagePreparation preparation_;
 };
 
 }  // namespace leviosim::traces

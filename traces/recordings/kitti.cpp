@@ -15,7 +15,7 @@
 #include "traces/datasets/image_file.h"
 #include "traces/datasets/row_values.h"
 #include "traces/recordings/formats.h"
-#include "traces/trajectories/trajectory_file.h"
+#include "traces/trajectories/kitti_files.h"
 
 namespace leviosim::traces {
 namespace {

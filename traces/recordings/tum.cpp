@@ -7,6 +7,7 @@
 #include "sim/base/input_file.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/dataset.h"
+#include "traces/datasets/imu_samples.h"
 #include "traces/datasets/row_values.h"
 #include "traces/datasets/sensor_yaml.h"
 #include "traces/recordings/formats.h"

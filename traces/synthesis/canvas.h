@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "traces/datasets/rng.h"
-#include "traces/synthesis/world.h"
+#include "traces/synthesis/texture.h"
 
 namespace leviosim::traces {
 

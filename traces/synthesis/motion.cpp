@@ -11,6 +11,9 @@
 #include "sim/base/check.h"
 #include "sim/base/units.h"
 #include "traces/datasets/rng.h"
+#include "traces/synthesis/imu_synthesis.h"
+#include "traces/synthesis/recorded_motion.h"
+#include "traces/synthesis/smoothing_spline.h"
 
 namespace leviosim::traces {
 namespace {

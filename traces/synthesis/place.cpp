@@ -15,10 +15,11 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
 #include "sim/base/threads.h"
 #include "traces/datasets/rng.h"
-#include "traces/synthesis/hall.h"
+#include "traces/synthesis/hall_layout.h"
+#include "traces/synthesis/indoor_boxes.h"
 #include "traces/synthesis/surface_painter.h"
 #include "traces/synthesis/world.h"
 

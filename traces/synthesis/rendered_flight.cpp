@@ -8,13 +8,19 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/base/units.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/asl_writer.h"
+#include "traces/datasets/image_file.h"
+#include "traces/datasets/image_preparation.h"
 #include "traces/datasets/rng.h"
+#include "traces/synthesis/flight_images.h"
+#include "traces/synthesis/frame_stamps.h"
 #include "traces/synthesis/hall.h"
-#include "traces/synthesis/motion.h"
+#include "traces/synthesis/illumination.h"
+#include "traces/synthesis/imu_synthesis.h"
+#include "traces/synthesis/recorded_motion.h"
 #include "traces/synthesis/renderer.h"
+#include "traces/synthesis/smoothing_spline.h"
 
 namespace leviosim::traces {
 namespace {
@@ -262,59 +268,6 @@ void write_rendered_flight(const fs::path& motion_dir, const fs::path& out_dir,
   write_streams(out, plan, options);
   write_pictures(out, plan, options, progress);
   commit_flight(out);
-}
-
-StampList regular_stamps(std::int64_t begin_ns, std::int64_t end_ns, double rate_hz) {
-  StampList stamps;
-  for (std::int64_t t_ns = begin_ns; t_ns <= end_ns;
-       t_ns = begin_ns + std::llround(static_cast<double>(stamps.size()) * 1e9 / rate_hz))
-    stamps.push_back(t_ns);
-  return stamps;
-}
-
-StampList stamps_within(const StampList& stamps, TimeSpan span) {
-  const auto first = std::lower_bound(stamps.begin(), stamps.end(), span.begin_ns);
-  return {first, std::upper_bound(first, stamps.end(), span.end_ns)};
-}
-
-StampList stamps_nearest_to_period(const StampList& grid, TimeSpan span, std::int64_t period_ns) {
-  const StampList inside = stamps_within(grid, span);
-  StampList chosen;
-  if (inside.empty()) return chosen;
-  for (std::int64_t t_ns = inside.front(); t_ns <= inside.back(); t_ns += period_ns) {
-    const auto right = std::lower_bound(inside.begin(), inside.end(), t_ns);
-    const bool left = right != inside.begin() && t_ns - *(right - 1) < *right - t_ns;
-    const std::int64_t nearest = left ? *(right - 1) : *right;
-    if (chosen.empty() || nearest > chosen.back()) chosen.push_back(nearest);
-  }
-  return chosen;
-}
-
-namespace {
-
-constexpr double kSlowPeriodS = 37;
-constexpr double kFastPeriodS = 11;
-
-}  // namespace
-
-Illumination::Illumination(std::uint64_t seed) : seed_(seed) {
-  Rng rng(seed);
-  for (double& phase : phases_) phase = rng.uniform(0, base::kTwoPi);
-}
-
-double Illumination::darkness(double t_s) const {
-  const double period = std::floor(t_s / kDarkEveryS);
-  Rng rng(derive_seed(seed_, static_cast<std::uint64_t>(static_cast<std::int64_t>(period))));
-  const double begin = rng.uniform(0, kDarkEveryS - kDarkS);
-  const double since = t_s - period * kDarkEveryS - begin;
-  const double depth = std::clamp(std::min(since, kDarkS - since) / kRampS, 0.0, 1.0);
-  return depth * depth * (3 - 2 * depth);
-}
-
-double Illumination::gain(double t_s) const {
-  const double drift = 0.6 * std::sin(base::kTwoPi * t_s / kSlowPeriodS + phases_[0]) +
-                       0.4 * std::sin(base::kTwoPi * t_s / kFastPeriodS + phases_[1]);
-  return (1 + kDrift * drift) * (1 - (1 - kDarkGain) * darkness(t_s));
 }
 
 }  // namespace leviosim::traces

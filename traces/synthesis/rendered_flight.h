@@ -14,15 +14,14 @@
 // need. Both give a pipeline the same images.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <vector>
 
 #include "traces/datasets/asl_reader.h"
-#include "traces/datasets/dataset.h"
-#include "traces/datasets/image_preparation.h"
+#include "traces/datasets/frame_range.h"
+#include "traces/datasets/image_file.h"
 #include "traces/synthesis/place.h"
 #include "traces/synthesis/synthetic.h"
 
@@ -59,48 +58,5 @@ void write_rendered_flight(const std::filesystem::path& motion_dir,
                            const std::filesystem::path& out_dir,
                            const RenderedFlightOptions& options = {},
                            const FlightProgress& progress = {});
-
-// Choosing the times at which a camera takes its frames. All stamps are nanoseconds and rise.
-
-using StampList = std::vector<std::int64_t>;
-
-struct TimeSpan {
-  std::int64_t begin_ns = 0;
-  std::int64_t end_ns = 0;  ///< inclusive
-};
-
-/// begin, begin + 1 / rate, ... up to end.
-StampList regular_stamps(std::int64_t begin_ns, std::int64_t end_ns, double rate_hz);
-
-StampList stamps_within(const StampList& stamps, TimeSpan span);
-
-/// The first of the grid's stamps in the span and then, for each further period, the nearest one:
-/// a camera that is triggered by the clock of another sensor.
-StampList stamps_nearest_to_period(const StampList& grid, TimeSpan span, std::int64_t period_ns);
-
-// Light that changes during a flight: the overall brightness drifts slowly, and now and then a
-// stretch of a few seconds is dark, as where lamps are out or an exposure control lags behind. A
-// factor on the grey levels before the sensor's noise, so that dark pictures are noisy ones. Left
-// out: lamps that move, flicker, overexposure that blooms.
-
-class Illumination {
- public:
-  static constexpr double kDrift = 0.25;     ///< largest drift of the brightness from 1
-  static constexpr double kDarkEveryS = 25;  ///< one dark stretch in each period of this length
-  static constexpr double kDarkGain = 0.3;   ///< factor within a dark stretch
-  static constexpr double kDarkS = 3;        ///< its length, with ramps of kRampS at both ends
-  static constexpr double kRampS = 0.5;
-
-  explicit Illumination(std::uint64_t seed);
-  /// Factor on the grey levels at a time of the flight, from 0.225 to 1.25.
-  double gain(double t_s) const;
-
- private:
-  /// 1 within the dark stretch of the period of time t, 0 outside, a smooth ramp between.
-  double darkness(double t_s) const;
-
-  std::uint64_t seed_;
-  std::array<double, 2> phases_;
-};
 
 }  // namespace leviosim::traces

@@ -10,13 +10,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <vector>
 
-#include "sim/outputs/output_folder.h"
-#include "traces/datasets/asl_writer.h"
 #include "traces/datasets/camera_model.h"
-#include "traces/datasets/dataset.h"
-#include "traces/datasets/image_preparation.h"
+#include "traces/datasets/euroc_sensors.h"
+#include "traces/datasets/imu_model.h"
 #include "traces/synthesis/world.h"
 
 namespace leviosim::traces {
@@ -45,19 +42,5 @@ struct SyntheticOptions {
 void write_synthetic_flight(const std::filesystem::path& out_dir,
                             const SyntheticOptions& options = {},
                             const FlightProgress& progress = {});
-
-// What this flight and rendered ones have in common: writing the images.
-
-/// Pixels of image i, row by row, 8-bit grey. Called from several threads.
-using DrawImage = std::function<std::vector<std::uint8_t>(std::size_t i)>;
-
-/// Writes mav0/cam0/data/<stamp>.png for each stamp, all of one size, on `threads` threads (0: as
-/// many as the host has). Throws InputError if that fails.
-void write_flight_images(outputs::OutputFolder& out, const std::vector<std::int64_t>& stamps_ns,
-                         ImageSize size, const DrawImage& draw, unsigned threads,
-                         const FlightProgress& progress);
-
-/// Gives a flight its name. Throws InputError if it has another one now.
-void commit_flight(outputs::OutputFolder& out);
 
 }  // namespace leviosim::traces

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "traces/synthesis/hall.h"
+#include "traces/synthesis/hall_layout.h"
+#include "traces/synthesis/layout_builder.h"
 
 namespace leviosim::traces {
 namespace {

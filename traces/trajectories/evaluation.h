@@ -11,79 +11,14 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "sim/base/error.h"
 #include "traces/datasets/dataset.h"
+#include "traces/trajectories/alignment.h"
+#include "traces/trajectories/association.h"
 #include "traces/trajectories/trajectory.h"
 
 namespace leviosim::traces {
-
-// Closed-form alignment of two point sets (Umeyama 1991; Horn 1987 for the rotation), the step that
-// takes away the freedom a trajectory estimate has by nature before it is compared with the truth.
-
-/// Trajectories that no error can be given for, though they are read and matched: an estimator that
-/// diverged leaves such a one.
-class NotComparable : public InputError {
- public:
-  using InputError::InputError;
-};
-
-enum class Alignment {
-  none,    ///< compared as they are
-  se3,     ///< rotation and translation
-  sim3,    ///< rotation, translation and scale: monocular without IMU
-  posyaw,  ///< translation and rotation about z: visual-inertial, gravity is observable
-};
-
-/// "none", "SE3", "Sim3", "PosYaw".
-std::string_view name_of(Alignment alignment);
-
-/// The alignment called "none", "se3", "sim3" or "posyaw". Throws InputError for others.
-Alignment parse_alignment(std::string_view name);
-
-/// x -> scale * rotation * x + translation.
-struct Similarity {
-  double scale = 1;
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-
-  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
-    return scale * (rotation * point) + translation;
-  }
-};
-
-/// The transform of the given kind that brings `from` closest to `to` (least squares). If the
-/// points leave a rotation open (all on a line), any best one is returned. Throws InputError for
-/// fewer points than needed (none: 0, posyaw: 2, se3 and sim3: 3), and NotComparable for sim3 if
-/// all points of `from` coincide, which leaves the scale open, and if squares of positions
-/// overflow.
-Similarity align_points(const std::vector<Eigen::Vector3d>& from,
-                        const std::vector<Eigen::Vector3d>& to, Alignment alignment);
-
-// Which estimated pose belongs to which true one, and how far along the true path it lies. The
-// truth is interpolated at the stamps of the estimate: positions linearly, rotations by slerp. It
-// is never extrapolated.
-
-/// An estimated pose and the true pose at its time, both of the body frame.
-struct MatchedPose {
-  std::int64_t t_ns = 0;
-  Eigen::Isometry3d estimate = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d truth = Eigen::Isometry3d::Identity();
-};
-
-/// Matches every pose of the estimate that lies within the span of the truth and no farther than
-/// `max_gap_ns` from its nearest sample.
-std::vector<MatchedPose> associate(const Trajectory& estimate, const Trajectory& truth,
-                                   std::int64_t max_gap_ns);
-
-/// Length of the true path from the first match to each one [m], along all samples of `truth`, so
-/// that it does not depend on how often the estimate has a pose. `truth` is that of associate().
-std::vector<double> distances_along(const Trajectory& truth,
-                                    const std::vector<MatchedPose>& matches);
-
-// Whether the accuracy of poses can be evaluated, before they are estimated.
 
 /// Throws InputError if the accuracy of poses at these times is unknown: there is ground truth,
 /// but fewer than three stamps have a true pose that is close enough (EvaluationOptions). Passes

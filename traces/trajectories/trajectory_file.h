@@ -2,15 +2,12 @@
 // folder that holds one.
 #pragma once
 
-#include <Eigen/Geometry>
-
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "traces/trajectories/alignment.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory.h"
 
@@ -67,17 +64,5 @@ struct TrajectoryPair {
 /// and for times that neither file needs.
 TrajectoryPair read_pair(const std::filesystem::path& estimate, const std::filesystem::path& truth,
                          const ReadOptions& options = {});
-
-// The KITTI odometry benchmark's text files. Poses: a line holds the upper three rows of
-// T_world_camera, row by row, 12 numbers and no time stamp. Times: a line holds seconds.
-// Left out: that KITTI's poses are those of a camera (x right, y down, z forward). They are taken
-// as they are, so "up" is z in files whose world has z up only.
-
-/// Throws InputError (file, line, column) for broken rows, matrices that are no rotation within
-/// 1e-3, and files without a pose. [m]
-std::vector<Eigen::Isometry3d> read_kitti_poses(const std::filesystem::path& file);
-
-/// Nanoseconds. Throws InputError (file, line) for broken rows and stamps that do not rise.
-std::vector<std::int64_t> read_times(const std::filesystem::path& file);
 
 }  // namespace leviosim::traces

@@ -1,4 +1,5 @@
 #include "traces/work_traces/section_file.h"
+#include "traces/work_traces/bytes.h"
 
 #include <fmt/core.h>
 #include <zlib.h>

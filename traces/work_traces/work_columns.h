@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sim/work/counts.h"
-#include "traces/work_traces/section_file.h"
+#include "traces/work_traces/bytes.h"
 
 namespace leviosim::traces {
 
@@ -79,8 +79,6 @@ class SeriesReader {
   std::vector<Term> terms_;
   std::vector<Sum> sums_;
 };
-
-// Numbers in the frames of a work trace (FORMAT.md) that its writer and reader share.
 
 /// Kinds of step.
 enum : std::uint64_t {

@@ -7,6 +7,7 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
+#include "traces/work_traces/memory_budget.h"
 #include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_memory.h"
 

@@ -4,8 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <string_view>
 
 #include "sim/base/units.h"
 #include "sim/work/program.h"
@@ -15,8 +13,8 @@ namespace leviosim::traces {
 /// By default for a whole trace. The recording of a flight at 160x120 pixels takes 4 to 8 MiB.
 inline constexpr Bytes kTraceMemory{std::int64_t{256} << 20};
 /// Frames are read one after the other. All that is decoded of a trace is no more than the ceiling
-/// and this many times the file, which bounds the time that a small file takes. Recordings reach 300
-/// to 400.
+/// and this many times the file, which bounds the time that a small file takes. Recordings reach
+/// 300 to 400.
 inline constexpr std::uint64_t kDecodedPerByte = 2048;
 /// What a frame takes of that beside its contents: what a replay does for each, in bytes decoded in
 /// the same time.
@@ -24,7 +22,8 @@ inline constexpr std::uint64_t kDecodedPerFrame = 16 << 10;
 
 inline constexpr std::size_t kFrameMemory = 2048;  ///< stamp, result, comparison, rows of tables
 inline constexpr std::size_t kJobMemory = 1024;    ///< with its timing
-inline constexpr std::size_t kStageMemory = sizeof(work::StageRun) + 1024;  ///< of a stage in memory
+inline constexpr std::size_t kStageMemory =
+    sizeof(work::StageRun) + 1024;  ///< of a stage in memory
 inline constexpr std::size_t kStepMemory = sizeof(work::Step) + 64;
 inline constexpr std::size_t kBlockMemory = 512;  ///< of a memory peak, with its statistics
 inline constexpr std::size_t kTextMemory = 128;   ///< beside its characters
@@ -39,40 +38,5 @@ inline constexpr std::size_t kMostMemories = 256;
 inline constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 40;
 /// Bytes of a transfer. So low that sums over a trace do not overflow.
 inline constexpr std::uint64_t kMostTransferred = std::uint64_t{1} << 34;
-
-// How much of the host's memory reading a file may take: a ledger with a ceiling. Readers enter
-// what they are about to allocate, so a small file that stands for much is refused before it is
-// given the memory, not when the host has none left.
-//
-// An entry is what the values take and what is derived from them later (a timing, a row of a
-// report), so it is higher than the size of the values alone. Left out: what the allocator adds.
-
-class MemoryBudget {
- public:
-  explicit MemoryBudget(Bytes ceiling) : ceiling_(static_cast<std::uint64_t>(ceiling.count())) {}
-
-  /// Enters so many bytes. False, and nothing entered, if that is more than is left.
-  [[nodiscard]] bool take(std::uint64_t bytes) {
-    if (bytes > ceiling_ - used_) [[unlikely]]
-      return false;
-    used_ += bytes;
-    return true;
-  }
-  /// Strikes out the entries since used() was that.
-  void release_to(std::uint64_t used) { used_ = used; }
-
-  std::uint64_t used() const { return used_; }
-  std::uint64_t ceiling() const { return ceiling_; }
-
-  /// Why take(bytes) fails. @param what  is to be read, e.g. "4000000 steps of a stage"
-  std::string refusal(std::string_view what, std::uint64_t bytes) const;
-
- private:
-  std::uint64_t ceiling_;
-  std::uint64_t used_ = 0;
-};
-
-/// "64 MiB", in the largest binary unit below the number.
-std::string memory_text(std::uint64_t bytes);
 
 }  // namespace leviosim::traces

@@ -8,6 +8,8 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/opened_file.h"
+#include "traces/work_traces/bytes.h"
+#include "traces/work_traces/memory_budget.h"
 #include "traces/work_traces/section_file.h"
 #include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_frames.h"

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -20,6 +21,8 @@
 
 #include "sim/work/program.h"
 #include "traces/trajectories/evaluation.h"
+#include "traces/work_traces/bytes.h"
+#include "traces/work_traces/memory_budget.h"
 #include "traces/work_traces/section_file.h"
 #include "traces/work_traces/work_columns.h"
 #include "traces/work_traces/work_memory.h"

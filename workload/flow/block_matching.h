@@ -10,7 +10,7 @@
 
 #include "sim/work/packed.h"
 #include "sim/work/policy.h"
-#include "workload/flow/estimator.h"
+#include "workload/flow/options.h"
 
 namespace leviosim::flow {
 

@@ -7,6 +7,7 @@
 #include "sim/base/error.h"
 #include "sim/work/policy.h"
 #include "workload/flow/block_matching.h"
+#include "workload/flow/options.h"
 #include "workload/vision/slices.h"
 
 namespace leviosim::flow {

@@ -1,5 +1,7 @@
 #include "workload/graph/carried_poses.h"
 
+#include "workload/inertial/record_sums.h"
+
 namespace leviosim::vio {
 namespace {
 

@@ -3,7 +3,7 @@
 #include "workload/graph/departing_visual_terms.h"
 #include "workload/graph/interval_rows.h"
 #include "workload/graph/reduced_system.h"
-#include "workload/math/trig.h"
+#include "workload/math/rotations.h"
 
 namespace leviosim::vio {
 namespace {

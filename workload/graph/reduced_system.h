@@ -4,6 +4,7 @@
 #pragma once
 
 #include "workload/inertial/record.h"
+#include "workload/inertial/record_sums.h"
 #include "workload/inertial/residual.h"
 #include "workload/math/matrix.h"
 #include "workload/math/solve.h"

@@ -14,6 +14,7 @@
 // bound for the zero-rate level of MEMS gyroscopes (some °/s), 0.05 m/s² that of accelerometers.
 #pragma once
 
+#include "workload/inertial/record_sums.h"
 #include "workload/inertial/residual.h"
 #include "workload/math/solve.h"
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "workload/inertial/imu.h"
+#include "workload/math/rotations.h"
 #include "workload/math/trig.h"
 
 namespace leviosim::vio {

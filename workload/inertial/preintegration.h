@@ -17,8 +17,9 @@
 #pragma once
 
 #include "workload/inertial/imu.h"
+#include "workload/inertial/record_sums.h"
 #include "workload/math/matrix.h"
-#include "workload/math/trig.h"
+#include "workload/math/rotations.h"
 
 namespace leviosim::vio {
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "workload/inertial/preintegration.h"
+#include "workload/inertial/record_sums.h"
 
 namespace leviosim::vio {
 

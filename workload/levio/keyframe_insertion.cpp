@@ -1,7 +1,7 @@
 #include "workload/levio/keyframe_insertion.h"
 
 #include "workload/levio/geometry/pose_matrix.h"
-#include "workload/levio/geometry/pose_recovery.h"
+#include "workload/levio/geometry/two_view_point.h"
 #include "workload/levio/vision/levio_matcher.h"
 #include "workload/vio/keyframes.h"
 #include "workload/vio/stages.h"

@@ -3,6 +3,7 @@
 #include "workload/levio/keyframe_insertion.h"
 #include "workload/levio/vision/levio_extractor.h"
 #include "workload/vio/frame_pose.h"
+#include "workload/vio/keyframe_pose.h"
 #include "workload/vio/keyframes.h"
 #include "workload/vio/stages.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "workload/levio/geometry/sampling.h"
-#include "workload/next/prediction.h"
+#include "workload/next/motion_record.h"
 #include "workload/vio/frame.h"
 #include "workload/vio/inertial_part.h"
 

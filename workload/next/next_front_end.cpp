@@ -3,9 +3,10 @@
 #include <algorithm>
 
 #include "workload/next/guided_tracking.h"
-#include "workload/next/prediction.h"
+#include "workload/next/motion_record.h"
+#include "workload/next/plausibility.h"
 #include "workload/vio/frame.h"
-#include "workload/vio/frame_pose.h"
+#include "workload/vio/keyframe_pose.h"
 #include "workload/vio/keyframes.h"
 #include "workload/vio/stages.h"
 

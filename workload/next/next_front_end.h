@@ -7,6 +7,7 @@
 
 #include "workload/levio/geometry/sampling.h"
 #include "workload/next/loop/loop_part.h"
+#include "workload/next/motion_record.h"
 #include "workload/next/prediction.h"
 #include "workload/vio/front_end_state.h"
 #include "workload/vio/inertial_part.h"

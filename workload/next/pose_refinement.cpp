@@ -1,8 +1,8 @@
 #include "workload/next/pose_refinement.h"
 
 #include "workload/inertial/record.h"
+#include "workload/math/rotations.h"
 #include "workload/math/solve.h"
-#include "workload/math/trig.h"
 
 namespace leviosim::vio {
 namespace {

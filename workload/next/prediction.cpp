@@ -1,5 +1,7 @@
 #include "workload/next/prediction.h"
 
+#include "workload/next/motion_record.h"
+#include "workload/next/plausibility.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {

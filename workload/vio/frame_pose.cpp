@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "workload/levio/geometry/eight_point.h"
 #include "workload/levio/geometry/epnp_ransac.h"
 #include "workload/levio/geometry/essential_ransac.h"
 #include "workload/levio/geometry/pose_matrix.h"
 #include "workload/levio/geometry/pose_recovery.h"
 #include "workload/levio/vision/levio_matcher.h"
+#include "workload/vio/keyframe_pose.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {

@@ -1,4 +1,4 @@
-#include "sim/outputs/output_folder.h"
+#include "sim/outputs/output_file.h"
 
 #include <gtest/gtest.h>
 

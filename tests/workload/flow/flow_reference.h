@@ -11,6 +11,7 @@
 #include "sim/work/machine.h"
 #include "tests/workload/vision/test_images.h"
 #include "workload/flow/estimator.h"
+#include "workload/flow/options.h"
 
 namespace leviosim::flow::testing {
 

@@ -3,6 +3,7 @@
 
 #include "tests/support/dense_algebra.h"
 #include "tests/workload/math/math_fixture.h"
+#include "workload/levio/geometry/jacobi.h"
 #include "workload/levio/geometry/least_squares.h"
 #include "workload/levio/geometry/levio_inverse_power.h"
 #include "workload/levio/geometry/svd.h"

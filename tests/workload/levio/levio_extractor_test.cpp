@@ -12,6 +12,7 @@
 #include "workload/levio/vision/learned_pairs.h"
 #include "workload/levio/vision/levio_blur.h"
 #include "workload/levio/vision/levio_descriptor.h"
+#include "workload/levio/vision/offset_tables.h"
 #include "workload/vision/extraction_steps.h"
 
 namespace leviosim::vio::levio {

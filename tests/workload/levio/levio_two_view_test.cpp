@@ -10,9 +10,11 @@
 
 #include "sim/work/machine.h"
 #include "tests/support/dense_algebra.h"
+#include "workload/levio/geometry/eight_point.h"
 #include "workload/levio/geometry/essential_ransac.h"
 #include "workload/levio/geometry/pose_matrix.h"
 #include "workload/levio/geometry/pose_recovery.h"
+#include "workload/levio/geometry/two_view_point.h"
 
 namespace leviosim::vio::levio {
 namespace {

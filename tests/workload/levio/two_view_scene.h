@@ -10,7 +10,7 @@
 #include "sim/work/policy.h"
 #include "tests/workload/math/eigen_conversions.h"
 #include "tests/workload/test_camera.h"
-#include "workload/levio/geometry/essential_ransac.h"
+#include "workload/levio/geometry/eight_point.h"
 
 namespace leviosim::vio::test {
 

@@ -1,4 +1,5 @@
 #include "workload/math/trig.h"
+#include "workload/math/rotations.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // What the odometry says of its map without the truth: each sign by itself.
-#include "workload/vio/odometry/back_end.h"
+#include "workload/vio/odometry/map_health.h"
 #include "workload/vio/profile.h"
 
 #include <gtest/gtest.h>

@@ -10,6 +10,7 @@
 #include "tests/workload/vision/test_images.h"
 #include "workload/levio/vision/corner_tests.h"
 #include "workload/levio/vision/levio_descriptor.h"
+#include "workload/levio/vision/offset_tables.h"
 #include "workload/vision/hamming.h"
 #include "workload/vision/harris.h"
 
@@ -90,8 +91,9 @@ TEST(VisionHost, TheHarrisResponseIsThatOfBothCountedKernels) {
   const levio::OffsetTables<C> tables(memory, kPictureWidth);
   for_pixels(kHarrisReach + 1, [&](ConstImageView<C> image, int centre) {
     const int response = host::harris_response(image.pixels.data() + centre, kPictureWidth);
-    ASSERT_EQ(response, work::value(harris_response<C>(image.pixels, kPictureWidth, centre % kPictureWidth,
-                                                       centre / kPictureWidth)));
+    ASSERT_EQ(response,
+              work::value(harris_response<C>(image.pixels, kPictureWidth, centre % kPictureWidth,
+                                             centre / kPictureWidth)));
     ASSERT_EQ(response,
               work::value(levio::corner_response<C>(image.pixels, kPictureWidth, centre, tables)));
   });

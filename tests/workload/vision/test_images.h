@@ -10,7 +10,7 @@
 #include "sim/work/policy.h"
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
-#include "traces/datasets/image_preparation.h"
+#include "traces/datasets/image_source.h"
 #include "workload/vision/features.h"
 
 namespace leviosim::vio::vision_test {

@@ -7,8 +7,10 @@
 
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
+#include "tools/app/budget/day.h"
 #include "tools/app/budget/figures.h"
-#include "tools/app/comparison/comparison.h"
+#include "tools/app/budget/reasons.h"
+#include "tools/app/comparison/comparison_words.h"
 #include "tools/app/record/measured.h"
 #include "tools/app/result/verdict.h"
 
@@ -96,183 +98,36 @@ void add_bad_verdicts(CheckResult& result, const RunRecord& run, const Budget& b
   }
 }
 
-constexpr std::size_t kMostReasons = 3;
-
-double size_of(const ComparedQuantity& q) { return std::abs(q.b.value_or(0) - q.a.value_or(0)); }
-
-/// The part that differs most; null if none does.
-const ComparedQuantity* most_different(const std::vector<ComparedQuantity>& parts) {
-  const auto it = std::max_element(
-      parts.begin(), parts.end(),
-      [](const ComparedQuantity& x, const ComparedQuantity& y) { return size_of(x) < size_of(y); });
-  return it == parts.end() || size_of(*it) == 0 ? nullptr : &*it;
+/// Whether a value that misses its limit is within the bound that was accepted instead.
+bool is_within(const Finding& f, const AcceptedMiss& miss, const Budget& budget) {
+  if (!miss.bound) return !f.value || !f.limit->bound.word.empty();
+  if (!f.value) return false;
+  Limit other = *f.limit;
+  other.bound.relative = false;
+  other.bound.number = miss.bound->number;
+  other.bound.unit = miss.bound->unit;
+  other.file = budget.file;
+  other.line = miss.line;
+  const double bound = bound_in(other, f.unit);
+  return f.limit->bound.at_most ? *f.value <= bound : *f.value >= bound;
 }
 
-/// Compared with nothing, the difference is the run itself.
-RunRecord nothing_like(const RunRecord& run) {
-  RunRecord nothing;
-  nothing.name = "nothing";
-  nothing.facts = run.facts;
-  nothing.stages = run.stages;
-  for (StageParts stage : run.cycles) {
-    stage.cycles = 0;
-    stage.parts.clear();
-    nothing.cycles.push_back(std::move(stage));
-  }
-  return nothing;
+void accept(Finding& f, const AcceptedMiss& miss, const Budget& budget) {
+  const std::string up_to =
+      miss.bound
+          ? fmt::format(" {} {:g}{}{}", f.limit->bound.at_most ? "up to" : "down to",
+                        miss.bound->number, miss.bound->unit.empty() ? "" : " ", miss.bound->unit)
+          : std::string();
+  const bool within = is_within(f, miss, budget);
+  if (today() > miss.until)
+    f.expired = fmt::format("was accepted{} until {}: {}", up_to, miss.until, miss.reason);
+  else if (within)
+    f.accepted = fmt::format("accepted{} until {}: {}", up_to, miss.until, miss.reason);
+  else
+    f.expired = miss.bound
+                    ? fmt::format("was accepted{} only: {}", up_to, miss.reason)
+                    : fmt::format("its entry under 'accepted' has no bound: {}", miss.reason);
 }
-
-class Explainer {
- public:
-  Explainer(const RunRecord& run, const RunRecord* baseline)
-      : run_(run),
-        has_baseline_(baseline != nullptr),
-        is_measured_(run.facts.measured || (baseline != nullptr && baseline->facts.measured)),
-        nothing_(has_baseline_ ? RunRecord() : nothing_like(run)),
-        comparison_(compare_runs(has_baseline_ ? *baseline : nothing_, run)) {}
-
-  void explain(Finding& f) const {
-    if (f.statistic.find("memory.") != std::string::npos)
-      explain_memory(f);
-    else if (f.statistic.rfind("accuracy.", 0) == 0 || f.statistic.rfind("trajectory.", 0) == 0)
-      explain_trajectory(f);
-    else if (f.stage.empty())
-      explain_frame(f);
-    else
-      explain_stage(f, f.stage);
-    if (!f.why.empty() || !has_baseline_) return;
-    f.why.emplace_back(is_measured_ ? "cycles were measured, so nothing is known of their causes"
-                                    : "its cycles are those of the baseline");
-  }
-
- private:
-  const StageComparison* stage(const std::string& name) const {
-    const auto it = std::find_if(comparison_.stages.begin(), comparison_.stages.end(),
-                                 [&](const StageComparison& s) { return s.stage.name == name; });
-    return it == comparison_.stages.end() ? nullptr : &*it;
-  }
-
-  /// The fork in which it happens, if it is known.
-  static std::string place_in(const StageComparison& s) {
-    const ComparedQuantity* place = s.forks ? most_different(s.forks->parts) : nullptr;
-    if (place == nullptr || place->name == kOutsideForks) return s.stage.name;
-    return s.stage.name + ", " + place->name;
-  }
-
-  /// What of the work differs by more than its digits show; empty if nothing does.
-  static std::string work_of(const StageComparison& s) {
-    constexpr double kShown = 0.005;
-    std::string text;
-    if (s.calls.a != s.calls.b)
-      text = fmt::format("calls {:g} → {:g}", s.calls.a.value_or(0), s.calls.b.value_or(0));
-    const double operations = s.operations.percent().value_or(0);
-    if (std::abs(operations) >= kShown)
-      text += fmt::format("{}operations {:+.2f} %", text.empty() ? "" : ", ", operations);
-    return text;
-  }
-
-  void explain_stage(Finding& f, const std::string& name) const {
-    const StageComparison* s = stage(name);
-    if (s != nullptr) f.where = s->stage.name;
-    if (s == nullptr || !s->mechanisms) return;
-    f.where = place_in(*s);
-    if (has_baseline_) {
-      if (const std::string work = work_of(*s); !work.empty())
-        f.why.push_back("the work changed: " + work);
-      for (const std::string& reason : reasons(*s, kMostReasons)) f.why.push_back(reason);
-      return;
-    }
-    const double whole = s->mechanisms->b.value_or(0);
-    for (const Leaf& leaf : leaves_by_difference(*s->mechanisms)) {
-      if (f.why.size() == kMostReasons || whole == 0) break;
-      f.why.push_back(fmt::format("{} is {:.1f} % of it", part_label(leaf.name),
-                                  100 * leaf.difference / whole));
-    }
-  }
-
-  void explain_frame(Finding& f) const {
-    const ComparedQuantity* most = most_different(comparison_.frame.parts);
-    if (most == nullptr) return;
-    explain_stage(f, most->name);
-    const double difference = most->b.value_or(0) - most->a.value_or(0);
-    f.why.insert(
-        f.why.begin(),
-        has_baseline_
-            ? fmt::format("{} takes {:+.1f} kcycles of a frame", most->name, difference / 1e3)
-            : fmt::format("{} takes {:.1f} kcycles of a frame, the most of all stages", most->name,
-                          difference / 1e3));
-  }
-
-  void explain_trajectory(Finding& f) const {
-    f.where = "trajectory";
-    f.why.push_back(has_baseline_ ? work_line(comparison_)
-                                  : "without a baseline, nothing to compare its work with");
-  }
-
-  /// The stage or the part of L2 that occupies most, and its blocks.
-  void explain_memory(Finding& f) const {
-    std::string owner = f.stage.empty() ? fullest(f.statistic.find("l2") != std::string::npos) : "";
-    for (const StageName& s : run_.stages)
-      if (s.name == f.stage) owner = fmt::format("stages.{}.memory.", s.key);
-    std::vector<ComparedQuantity> blocks;
-    for (const Statistic& s : run_.statistics) {
-      if (s.name.rfind(owner + "block.", 0) != 0) continue;
-      blocks.push_back({s.name.substr(owner.size() + 6), "byte", 0.0, s.value});
-    }
-    std::stable_sort(blocks.begin(), blocks.end(),
-                     [](const ComparedQuantity& x, const ComparedQuantity& y) {
-                       return size_of(x) > size_of(y);
-                     });
-    f.where =
-        fmt::format("{}{}", name_of(owner), blocks.empty() ? "" : ", block " + blocks.front().name);
-    const std::string prefix = name_of(owner) + ": ";
-    if (has_baseline_)
-      for (const ComparedQuantity& q : comparison_.blocks)
-        if (q.name.rfind(prefix, 0) == 0 && f.why.size() < kMostReasons)
-          f.why.push_back(fmt::format("{} {:+.1f} kB", q.name.substr(prefix.size()),
-                                      (q.b.value_or(0) - q.a.value_or(0)) / 1e3));
-    for (const ComparedQuantity& block : blocks)
-      if (f.why.size() < kMostReasons)
-        f.why.push_back(
-            fmt::format("{} is {}", block.name, figure_text(block.b.value_or(0), "byte")));
-  }
-
-  /// "stages.epnp_ransac.memory." of the stage with the highest peak, or "memory.l2.optimiser.".
-  std::string fullest(bool l2) const {
-    std::string owner;
-    double most = -1;
-    for (const Statistic& s : run_.statistics) {
-      constexpr std::string_view kPeak = "memory.parallel";
-      const bool is_l2 = matches("memory.l2.*.bytes", s.name);
-      const bool is_l1 = matches("stages.*.memory.parallel", s.name) && !on_controller(s.name);
-      if (!(l2 ? is_l2 : is_l1) || s.value.value_or(0) <= most) continue;
-      most = *s.value;
-      owner = s.name.substr(0, s.name.size() - (l2 ? 5 : kPeak.size() - 7));
-    }
-    return owner;
-  }
-
-  bool on_controller(const std::string& statistic) const {
-    return std::any_of(run_.stages.begin(), run_.stages.end(), [&](const StageName& s) {
-      return s.on_controller && statistic.rfind("stages." + s.key + '.', 0) == 0;
-    });
-  }
-
-  /// For people.
-  std::string name_of(const std::string& owner) const {
-    for (const StageName& s : run_.stages)
-      if (owner == fmt::format("stages.{}.memory.", s.key)) return s.name;
-    constexpr std::string_view kL2 = "memory.l2.";
-    if (owner.rfind(kL2, 0) != 0) return "L1";
-    return owner.substr(kL2.size(), owner.size() - kL2.size() - 1);
-  }
-
-  const RunRecord& run_;
-  bool has_baseline_;
-  bool is_measured_;
-  RunRecord nothing_;
-  RunComparison comparison_;
-};
 
 }  // namespace
 
@@ -298,17 +153,27 @@ std::optional<double> Finding::better() const {
   return percent > allowed + kRounding ? std::optional(percent) : std::nullopt;
 }
 
+bool Finding::is_share() const {
+  return unit == "%" || (unit == "1" && !limit->bound.relative &&
+                         (limit->bound.unit == "%" || statistic.ends_with("share")));
+}
+
 std::string Finding::distance() const {
   if (!value) return "the run has no such value";
   const std::string found = figure_text(*value, unit, limit->bound);
   if (!bound) return found + ", but the baseline has no value of it";
+  if (!limit->bound.word.empty())
+    return fmt::format("{}, worse than {}", found, figure_text(*bound, unit, limit->bound));
   const double over = *value - *bound;
   const std::string limit_text = figure_text(*bound, unit, limit->bound);
   const char* side = over > 0 ? "above" : over < 0 ? "below" : "at";
   std::string text = over == 0     ? fmt::format("{}, at the limit", found)
                      : *bound == 0 ? fmt::format("{}, {} {}", found, side, limit_text)
-                                   : fmt::format("{}, {:.2f} % {} {}", found,
-                                                 100 * std::abs(over / *bound), side, limit_text);
+                     : is_share()
+                         ? fmt::format("{}, {:.2f} percentage points {} {}", found,
+                                       std::abs(over) * (unit == "%" ? 1 : 100), side, limit_text)
+                         : fmt::format("{}, {:.2f} % {} {}", found, 100 * std::abs(over / *bound),
+                                       side, limit_text);
   if (baseline && *baseline != 0)
     text +=
         fmt::format("; {:+.2f} % of {} {}", 100 * (*value - *baseline) / *baseline,
@@ -343,7 +208,8 @@ void fail_without_baseline(const Limit& limit) {
       .fail(fmt::format("'{}' is relative to a baseline; expected --baseline", limit.text));
 }
 
-CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline) {
+CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRecord* baseline,
+                         const RunRecord* beside) {
   CheckResult result{run.name, budget.file, baseline == nullptr ? "" : baseline->name, {}};
   for (const BudgetSection* section : sections_for(budget, run))
     for (const Limit& limit : section->limits) {
@@ -363,20 +229,10 @@ CheckResult check_budget(const RunRecord& run, const Budget& budget, const RunRe
   add_bad_verdicts(result, run, budget);
   for (Finding& finding : result.findings)
     for (const AcceptedMiss& miss : budget.accepted)
-      if (!finding.met && finding.title() == miss.limit) {
-        if (today() <= miss.until)
-          finding.accepted = fmt::format("accepted until {}: {}", miss.until, miss.reason);
-        else
-          finding.expired = fmt::format("was accepted until {}: {}", miss.until, miss.reason);
-      }
-  if (result.missed() + result.warned() > 0) explain(result, run, baseline);
+      if (!finding.met && finding.title() == miss.limit) accept(finding, miss, budget);
+  if (result.missed() + result.warned() > 0)
+    explain(result, run, baseline != nullptr ? baseline : beside);
   return result;
-}
-
-void explain(CheckResult& result, const RunRecord& run, const RunRecord* baseline) {
-  const Explainer explainer(run, baseline);
-  for (Finding& finding : result.findings)
-    if (!finding.met) explainer.explain(finding);
 }
 
 }  // namespace leviosim::tools

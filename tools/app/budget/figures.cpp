@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 
-#include "platform_models/loader/schema.h"
+#include "platform_models/loader/units.h"
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
 #include "tools/app/result/verdict.h"
 
 namespace leviosim::tools {

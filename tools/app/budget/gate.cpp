@@ -7,9 +7,11 @@
 
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
+#include "tools/app/budget/check_report.h"
 #include "tools/app/budget/figures.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/exit_status.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/record/measured.h"
 
 namespace leviosim::tools {
@@ -62,7 +64,7 @@ void Gate::use_baseline(RunRecord baseline) {
   if (!baseline_) baseline_ = std::move(baseline);
 }
 
-CheckResult Gate::check(const RunRecord& of) const {
+CheckResult Gate::check(const RunRecord& of, const RunRecord* beside) const {
   RunRecord run = of;
   std::optional<RunRecord> baseline = baseline_;
   if (baseline) {
@@ -71,7 +73,7 @@ CheckResult Gate::check(const RunRecord& of) const {
     name_stages_like(run, *baseline);
     name_stages_like(*baseline, run);
   }
-  CheckResult result = check_budget(run, budget_, baseline ? &*baseline : nullptr);
+  CheckResult result = check_budget(run, budget_, baseline ? &*baseline : nullptr, beside);
   result.is_kept = is_kept_;
   return result;
 }

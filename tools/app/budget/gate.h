@@ -9,7 +9,7 @@
 
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/check.h"
-#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/comparability.h"
 #include "tools/app/record/record.h"
 #include "tools/app/run/record_source.h"
 
@@ -49,8 +49,9 @@ class Gate {
   /// Null if there is none.
   const RunRecord* baseline() const { return baseline_ ? &*baseline_ : nullptr; }
 
+  /// @param beside  what explains a miss where there is no baseline; may be null
   /// @throws InputError as check_comparable() and check_budget()
-  CheckResult check(const RunRecord& run) const;
+  CheckResult check(const RunRecord& run, const RunRecord* beside = nullptr) const;
 
  private:
   Budget budget_;

@@ -52,12 +52,4 @@ double parse_positive(const std::string& option, const std::string& text);
 /// @throws InputError if the option was not given
 void require(const CLI::App& command, const std::string& option, const std::string& expected);
 
-// The command line as others describe it: a manual page, and what shells complete. All of it
-// follows from what the commands declare.
-
-/// @param format  "man", "bash", "zsh" or "fish"
-/// @throws InputError for others
-std::string manual(const CLI::App& app, const std::vector<Command>& commands,
-                   const std::string& format);
-
 }  // namespace leviosim::tools

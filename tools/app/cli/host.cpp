@@ -1,4 +1,6 @@
 #include "tools/app/cli/host.h"
+#include "tools/app/cli/cache_folder.h"
+#include "tools/app/cli/child_programs.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -22,7 +24,6 @@
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
 #include "sim/outputs/file_system.h"
-#include "tools/app/cli/terminal.h"
 
 namespace leviosim::tools {
 namespace {

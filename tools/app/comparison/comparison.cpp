@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/app/comparison/stage_difference.h"
 #include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {

@@ -1,18 +1,12 @@
-#include "tools/app/comparison/comparison.h"
-
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
+#include "tools/app/comparison/comparison_files.h"
 
 #include "sim/base/csv.h"
-#include "sim/base/text.h"
-#include "tools/app/cli/terminal.h"
-#include "tools/app/comparison/main_causes.h"
+#include "sim/base/printable.h"
+#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/model_errors.h"
 #include "tools/app/record/record.h"
 #include "tools/app/result/verdict.h"
 #include "tools/app/table/table_files.h"
-#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -79,115 +73,6 @@ class CsvRows {
 
 // What fits on a screen of a comparison: figures of the run, the stages that differ most, and why.
 
-constexpr std::size_t kMostFigures = 6;
-constexpr std::size_t kMostStages = 4;
-constexpr std::size_t kMostCauses = 5;
-constexpr double kPerKilo = 1e3;
-/// Of the whole difference: a cause with less goes without saying.
-constexpr double kLeastCause = 0.02;
-
-std::string screen_line(const std::string& text) { return shortened(text, kScreenColumns) + '\n'; }
-
-/// With the settings that the other run does not have. The name last, which may be long.
-std::string described(std::string_view letter, const RunRecord& run, const RunRecord& other) {
-  const RunFacts& f = run.facts;
-  std::string text = fmt::format("{}  {}", letter, printable(f.profile)) +
-                     (f.platform.empty() ? " on the host" : " on " + printable(f.platform));
-  const auto add = [&](const std::vector<std::string>& sets,
-                       const std::vector<std::string>& others) {
-    for (const std::string& set : sets)
-      if (std::find(others.begin(), others.end(), set) == others.end())
-        text += ", " + printable(set);
-  };
-  add(f.workload, other.facts.workload);
-  add(f.overrides, other.facts.overrides);
-  if (f.cores > 0) text += fmt::format(", {} cores", f.cores);
-  if (!f.camera.empty()) text += ", camera at " + printable(f.camera);
-  return screen_line(text + ": " + printable(run.name));
-}
-
-std::string verdicts_in_words(const RunRecord& run) {
-  std::string words;
-  for (const RunVerdict& verdict : run.verdicts.list)
-    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", verdict.about, verdict.word());
-  return words;
-}
-
-std::string verdict_line(const RunComparison& c) {
-  const std::string a = verdicts_in_words(c.a);
-  const std::string b = verdicts_in_words(c.b);
-  if (a == b) return screen_line("verdicts: " + a);
-  return screen_line("verdicts A: " + a) + screen_line("         B: " + b);
-}
-
-/// Those that differ, in their order, after the mean frame.
-std::string figure_lines(const RunComparison& c) {
-  Table table({{"", kLeft}, {"A"}, {"B"}, {"unit", kLeft}, {"change"}});
-  std::size_t rows = 0;
-  for (const ComparedQuantity& q : c.figures) {
-    const bool is_first = &q == &c.figures.front();
-    if ((q.a == q.b && !is_first) || rows == kMostFigures) continue;
-    ++rows;
-    const int decimals = q.unit == "m" || q.unit == "mJ" ? 3 : q.unit == "ms" ? 2 : 1;
-    table.add({q.name, figure_text(q.a, decimals), figure_text(q.b, decimals), q.unit,
-               q.percent() ? fmt::format("{:+.1f} %", *q.percent()) : kNothing});
-  }
-  return terminal_text(table, kScreenColumns);
-}
-
-/// Those whose part of a frame differs most.
-std::string stages_of_summary(const RunComparison& c) {
-  std::vector<const ComparedQuantity*> stages;
-  const auto size = [](const ComparedQuantity* q) {
-    return std::abs(q->b.value_or(0) - q->a.value_or(0));
-  };
-  for (const ComparedQuantity& stage : c.frame.parts)
-    if (size(&stage) >= 0.05 * kPerKilo) stages.push_back(&stage);
-  if (stages.empty()) return {};
-  std::stable_sort(stages.begin(), stages.end(),
-                   [&](const auto* x, const auto* y) { return size(x) > size(y); });
-  Table table({{"kcycles of a mean frame", kLeft}, {"A"}, {"B"}, {"change"}});
-  for (std::size_t i = 0; i < std::min(stages.size(), kMostStages); ++i)
-    table.add({shortened(stages[i]->name, 30), figure_text(*stages[i]->a / kPerKilo, 1),
-               figure_text(*stages[i]->b / kPerKilo, 1),
-               stages[i]->percent() ? fmt::format("{:+.1f} %", *stages[i]->percent()) : kNothing});
-  return terminal_text(table, kScreenColumns);
-}
-
-std::vector<std::string> cause_lines(const RunComparison& c) {
-  if (c.a.cycles.empty() || c.b.cycles.empty())
-    return {screen_line("where the cycles of one of the runs went is not known; replay its trace")};
-  std::vector<std::string> lines;
-  const std::vector<MainCause> causes = main_causes(timed_parts(c.a), timed_parts(c.b));
-  double most = 0;
-  for (const MainCause& cause : causes) most = std::max(most, std::abs(cause.ms));
-  for (const MainCause& cause : causes)
-    if (lines.size() < kMostCauses && std::abs(cause.ms) >= kLeastCause * most &&
-        std::abs(cause.ms) >= 0.005)
-      lines.push_back(screen_line("  " + cause_text(cause)));
-  if (!lines.empty())
-    lines.insert(lines.begin(), screen_line("why a mean frame takes another time:"));
-  const std::string unused = unused_text(unused_accelerators(c.a), unused_accelerators(c.b));
-  if (!unused.empty())
-    lines.push_back(wrap({unused.substr(0, unused.find(", because")) + ",",
-                          unused.substr(unused.find("because"))},
-                         " ", 2, kScreenColumns) +
-                    '\n');
-  if (lines.empty()) lines.push_back(screen_line("no stage differs"));
-  return lines;
-}
-
-/// "in short: B takes 41.60 ms for a mean frame, A 41.94 (-0.8 %)"
-std::string conclusion(const RunComparison& c) {
-  if (c.figures.empty()) return screen_line("in short: no figure is in both");
-  const ComparedQuantity& first = c.figures.front();
-  const int decimals = first.unit == "ms" ? 2 : 3;
-  return screen_line(
-      fmt::format("in short: {}: A {}, B {} {}{}", first.name, figure_text(first.a, decimals),
-                  figure_text(first.b, decimals), first.unit,
-                  first.percent() ? fmt::format(" ({:+.1f} %)", *first.percent()) : ""));
-}
-
 }  // namespace
 
 Json comparison_json(const RunComparison& c) {
@@ -236,89 +121,6 @@ std::string comparison_csv(const RunComparison& c) {
   return rows.text();
 }
 
-std::string comparison_summary(const RunComparison& c) {
-  if (c.a.facts.measured || c.b.facts.measured) return measured_report(c, false);
-  std::string text = described("A", c.a, c.b) + described("B", c.b, c.a);
-  for (const std::string& note : c.notes) text += screen_line("note: " + printable(note));
-  text += screen_line(work_line(c)) + verdict_line(c) + figure_lines(c) + stages_of_summary(c);
-  const auto count = [](const std::string& of) {
-    return static_cast<int>(std::count(of.begin(), of.end(), '\n'));
-  };
-  const std::string end =
-      conclusion(c) + "next: the same with --all, or with --report compare.html\n";
-  for (const std::string& cause : cause_lines(c))
-    if (count(text) + count(cause) + count(end) <= kScreenLines) text += cause;
-  return text + end;
-}
-
 // A model against a measurement: the error of each stage.
-
-std::vector<ModelError> model_errors(const RunComparison& c) {
-  const bool is_a_reference = c.a.facts.measured;
-  std::vector<ModelError> errors;
-  const auto add = [&](const std::string& name, const std::optional<double>& a,
-                       const std::optional<double>& b) {
-    errors.push_back({name, is_a_reference ? a : b, is_a_reference ? b : a, std::nullopt});
-    ModelError& e = errors.back();
-    if (e.measured && e.model && *e.measured != 0)
-      e.percent = 100 * (*e.model - *e.measured) / *e.measured;
-  };
-  for (const StageComparison& s : c.stages) add(s.stage.name, s.parallel.a, s.parallel.b);
-  add("frame", c.frame.a, c.frame.b);
-  return errors;
-}
-
-std::string measured_report(const RunComparison& c, bool markdown) {
-  const bool is_a_reference = c.a.facts.measured;
-  const RunRecord& measured = is_a_reference ? c.a : c.b;
-  const RunRecord& other = is_a_reference ? c.b : c.a;
-  const char* const what = other.facts.measured ? "other" : "model";
-  const std::string bullet = markdown ? "- " : "";
-  std::string text;
-  const auto line = [&](const std::string& words) {
-    text += bullet + (markdown ? markdown_text(words) : shortened(words, kScreenColumns)) + '\n';
-  };
-  line("measured: " + printable(measured.name));
-  line(fmt::format("{}: {}", what, printable(other.name)));
-  for (const std::string& note : c.notes) line("note: " + printable(note));
-  Table table({{"kcycles of a call", kLeft}, {"measured"}, {what}, {"error"}});
-  std::vector<std::string> missing;
-  double sum = 0;
-  std::size_t stages = 0;
-  const ModelError* worst = nullptr;
-  const std::vector<ModelError> errors = model_errors(c);
-  const auto kilo = [](std::optional<double> v) {
-    return figure_text(v ? std::optional(*v / 1e3) : v, 1);
-  };
-  for (const ModelError& e : errors) {
-    const bool is_frame = &e == &errors.back();
-    if (!e.measured) {
-      if (!is_frame && e.model) missing.push_back(printable(e.stage));
-      continue;
-    }
-    table.add({shortened(e.stage, 30), kilo(e.measured), kilo(e.model),
-               e.percent ? fmt::format("{:+.2f} %", *e.percent) : kNothing});
-    if (is_frame || !e.percent) continue;
-    ++stages;
-    sum += std::abs(*e.percent);
-    if (worst == nullptr || std::abs(*e.percent) > std::abs(*worst->percent)) worst = &e;
-  }
-  text += (markdown ? "\n" + markdown_table(table) + "\n" : terminal_text(table));
-  if (!missing.empty()) {
-    missing.front().insert(0, "not measured: ");
-    for (std::size_t i = 0; i + 1 < missing.size(); ++i) missing[i] += ',';
-    const std::string lines = wrap(missing, " ", 2, kScreenColumns) + '\n';
-    text += markdown ? "\n" + markdown_text(lines.substr(0, lines.size() - 1)) + '\n' : lines;
-  }
-  if (worst == nullptr) return text + "in short: no stage is in both\n";
-  return text +
-         wrap({fmt::format("in short: {:.2f} % off on average of {} stages,",
-                           sum / static_cast<double>(stages), stages),
-               fmt::format("most in {} ({:+.2f} %)",
-                           markdown ? markdown_text(worst->stage) : printable(worst->stage),
-                           *worst->percent)},
-              " ", 2, kScreenColumns) +
-         (markdown ? "\n" : "\nnext: the same with --json, or both in leviosim check --baseline\n");
-}
 
 }  // namespace leviosim::tools

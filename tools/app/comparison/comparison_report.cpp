@@ -1,4 +1,4 @@
-#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/comparison_report.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,13 @@
 #include <cmath>
 
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
+#include "sim/base/printable.h"
+#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/comparison_files.h"
+#include "tools/app/comparison/comparison_summary.h"
+#include "tools/app/comparison/comparison_words.h"
+#include "tools/app/comparison/model_errors.h"
 #include "tools/app/record/measured.h"
 #include "tools/app/table/terminal_table.h"
 
@@ -18,9 +24,6 @@ constexpr std::size_t kMostParts = 6;
 constexpr std::size_t kMostBlocks = 12;
 constexpr int kWidth = 80;
 constexpr double kKilo = 1e3;
-
-/// A part that changes its stage by less explains nothing.
-constexpr double kLeastShare = 1e-4;
 
 /// Nothing would be left of it in kilocycles with one decimal.
 constexpr double kLeastShown = 0.05 * kKilo;
@@ -34,12 +37,6 @@ constexpr std::array kFormats{
     NamedFormat{"json", ReportFormat::json}, NamedFormat{"csv", ReportFormat::csv}};
 
 int decimals_of(const std::string& unit) { return unit == "m" || unit == "mJ" ? 3 : 1; }
-
-std::string percent(std::optional<double> value) {
-  if (!value) return kNothing;
-  if (std::abs(*value) < 0.005) return *value == 0 ? "0" : "±0.00 %";
-  return fmt::format("{:+.2f} %", *value);
-}
 
 std::string kilocycles(std::optional<double> cycles) {
   return figure_text(cycles ? std::optional(*cycles / kKilo) : std::nullopt, 1);
@@ -119,7 +116,7 @@ class Writer {
     Table t({{"", kLeft}, {"A"}, {"B"}, {"unit", kLeft}, {"change"}});
     for (const ComparedQuantity& q : c_.figures)
       t.add({q.name, figure_text(q.a, decimals_of(q.unit)), figure_text(q.b, decimals_of(q.unit)),
-             q.unit, percent(q.percent())});
+             q.unit, signed_percent(q.percent())});
     table(t);
   }
 
@@ -139,11 +136,12 @@ class Writer {
       if (!s.parallel.a && !s.parallel.b) continue;  // it did not run
       const std::string name = shortened(s.stage.name, 20);
       all.add({name, pair(s.calls, 0), kilocycles(s.parallel.a), kilocycles(s.parallel.b),
-               percent(s.parallel.percent()), figure_text(s.share.a, 1),
+               signed_percent(s.parallel.percent()), figure_text(s.share.a, 1),
                figure_text(s.share.b, 1)});
       if (s.single.a == s.single.b) continue;
       any_single = true;
-      one.add({name, kilocycles(s.single.a), kilocycles(s.single.b), percent(s.single.percent())});
+      one.add({name, kilocycles(s.single.a), kilocycles(s.single.b),
+               signed_percent(s.single.percent())});
     }
     table(all);
     text_ += '\n';
@@ -257,7 +255,8 @@ class Writer {
     Table t({{"", kLeft}, {"A"}, {"B"}, {"difference"}, {"change"}});
     const auto row = [&](const ComparedQuantity& q) {
       t.add({shortened(q.name, 24), figure_text(q.a, 4), figure_text(q.b, 4),
-             q.difference() ? fmt::format("{:+.4f}", *q.difference()) : "–", percent(q.percent())});
+             q.difference() ? fmt::format("{:+.4f}", *q.difference()) : "–",
+             signed_percent(q.percent())});
     };
     for (const ComparedQuantity& part : whole.parts)
       if (std::abs(part.b.value_or(0) - part.a.value_or(0)) >= kLeastEnergy) row(part);
@@ -272,11 +271,6 @@ class Writer {
 
 }  // namespace
 
-std::string part_label(const std::string& name) {
-  const std::string_view meaning = describe_mechanism(name);
-  return meaning.empty() ? name : std::string(meaning);
-}
-
 ReportFormat parse_report_format(const std::string& name) {
   std::vector<std::string> names;
   for (const NamedFormat& f : kFormats) {
@@ -285,45 +279,6 @@ ReportFormat parse_report_format(const std::string& name) {
   }
   throw InputError(fmt::format("--format '{}': expected {}{}", name, fmt::join(names, ", "),
                                base::did_you_mean(name, names)));
-}
-
-std::string work_line(const RunComparison& comparison) {
-  if (comparison.stages.empty()) return "work: not counted in a native run";
-  if (comparison.same_work())
-    return "work: the same operations and calls in all stages; what differs is their cost";
-  std::vector<std::string> changes;
-  std::vector<std::string> moved;
-  for (const StageComparison& s : comparison.stages) {
-    if (s.same_work) continue;
-    if (!s.offloaded.empty() && s.calls.a == s.calls.b) {
-      moved.push_back(fmt::format("{} {}", printable(s.stage.name), fmt::join(s.offloaded, ", ")));
-      continue;
-    }
-    std::string change = printable(s.stage.name);
-    if (s.calls.a != s.calls.b)
-      change +=
-          fmt::format(" {} → {} calls,", figure_text(s.calls.a, 0), figure_text(s.calls.b, 0));
-    changes.push_back(change + fmt::format(" operations {}", percent(s.operations.percent())));
-  }
-  const std::string offloaded =
-      moved.empty() ? "" : fmt::format("work moved: {}", fmt::join(moved, "; "));
-  if (changes.empty()) return offloaded;
-  return fmt::format("work: CHANGED in {} of {} stages: {}{}{}", changes.size(),
-                     comparison.stages.size(), fmt::join(changes, "; "),
-                     offloaded.empty() ? "" : "; ", offloaded);
-}
-
-std::vector<std::string> reasons(const StageComparison& stage, std::size_t most) {
-  std::vector<std::string> list;
-  if (!stage.mechanisms || stage.mechanisms->a.value_or(0) == 0) return list;
-  const double whole = *stage.mechanisms->a;
-  for (const Leaf& leaf : leaves_by_difference(*stage.mechanisms)) {
-    if (list.size() == most || std::abs(leaf.difference) < kLeastShare * whole) break;
-    if (leaf.name == kOtherParts && !list.empty()) continue;  // says nothing beside a reason
-    list.push_back(
-        fmt::format("{} {:+.2f} %", part_label(leaf.name), 100 * leaf.difference / whole));
-  }
-  return list;
 }
 
 std::string comparison_report(const RunComparison& comparison, ReportFormat format) {

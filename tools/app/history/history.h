@@ -12,15 +12,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "sim/base/pieces.h"
-#include "tools/app/budget/budget.h"
-#include "tools/app/budget/check.h"
-#include "tools/app/cli/outputs.h"
 #include "tools/app/record/record.h"
 
 namespace leviosim::tools {
@@ -103,68 +99,5 @@ class History {
 /// @throws InputError as outputs::add_lines(), and for what is no history; Interrupted
 void add_to_history(const std::string& file,
                     const std::function<std::string(const History&)>& lines);
-
-// What became of the figures of a budget over many runs. Runs have no noise: every change of a
-// figure is one of a commit. A change beyond a limit is a step; smaller ones that are beyond it
-// together are a drift, which no comparison with the run before shows.
-
-/// A change of a figure from one run to the next.
-struct FigureChange {
-  std::size_t run = 0;  ///< that has the new value
-  double percent = 0;   ///< of the value before; above 0: worse
-};
-
-/// A figure over runs, the oldest first, held against a limit in per cent of a baseline.
-struct Trend {
-  const Limit* limit = nullptr;
-  const BudgetSection* section = nullptr;
-  std::string statistic;
-  std::string stage;  ///< its name; empty: the run as a whole
-  std::string unit;
-  std::vector<std::optional<double>> values;
-  double allowed = 0;               ///< of a change for the worse, in per cent
-  std::vector<FigureChange> steps;  ///< for the worse, beyond the limit
-  std::vector<FigureChange> drift;  ///< the others, if they are beyond it together; else none
-  double drift_percent = 0;         ///< their sum
-};
-
-/// Of every limit with a sign and %, for figures that some of the runs have. The budget outlives
-/// the trends.
-std::vector<Trend> trends(const Budget& budget, const std::vector<PastRun>& runs);
-
-/// "drift of +2.0 % in 10 commits, none above +0.2 %: 8f3c2a1 … 99ab01c".
-std::string drift_text(const Trend& trend, const std::vector<PastRun>& runs);
-/// "step of +3.0 % at 8f3c2a1 (make EPnP exact): solve EPnP: issue: f64_add +2.9 %".
-std::string step_text(const Trend& trend, const FigureChange& step,
-                      const std::vector<PastRun>& runs);
-
-/// Adds to what a check found of a run what the runs before it tell: limits that it holds, but only
-/// since the baseline moved along; and of limits that are not met, whether they were met before.
-/// @param before  runs like it, the oldest first; may be none
-void add_history(CheckResult& result, const RunRecord& run, const Budget& budget,
-                 const std::vector<PastRun>& before);
-
-// A history for people: a table of its newest runs, and a page with charts over commits.
-
-/// "2026-11-26", in UTC.
-std::string date_text(std::int64_t time_s);
-
-/// A row a run with what changed, the newest last, and what became of the limits of a budget.
-/// @param runs    comparable ones, the oldest first
-/// @param budget  whose steps and drifts are named; may be null
-/// @param next    command lines to try
-Printout history_printout(const std::vector<PastRun>& runs, const Budget* budget,
-                          std::vector<std::string> next);
-
-/// The same as JSON: a list of runs with their figures.
-std::string history_document(const std::vector<PastRun>& runs);
-
-/// The figures of a run as other trackers read them: "github-action-benchmark" (smaller is better),
-/// or "bencher" (Bencher Metric Format). @throws InputError for another format
-std::string exported(const PastRun& run, const std::string& format);
-
-/// Charts of the figures over runs, with the limits of the budget, and two runs beside each other.
-/// Of long histories the runs that changed something, and the newest.
-Json history_page(const std::string& title, const std::vector<PastRun>& runs, const Budget* budget);
 
 }  // namespace leviosim::tools

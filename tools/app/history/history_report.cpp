@@ -1,4 +1,4 @@
-#include "tools/app/history/history.h"
+#include "tools/app/history/history_report.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -10,11 +10,14 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
+#include "sim/base/printable.h"
 #include "tools/app/budget/budget.h"
 #include "tools/app/budget/figures.h"
-#include "tools/app/comparison/comparison.h"
-#include "tools/app/html_report/page.h"
+#include "tools/app/comparison/comparison_words.h"
+#include "tools/app/history/history.h"
+#include "tools/app/history/trends.h"
+#include "tools/app/html_report/study_page.h"
 #include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {

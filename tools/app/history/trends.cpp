@@ -1,4 +1,6 @@
 // Steps and drifts of figures over the runs of a history, part of history.h.
+#include "tools/app/history/trends.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +9,7 @@
 
 #include "tools/app/budget/figures.h"
 #include "tools/app/budget/gate.h"
+#include "tools/app/budget/reasons.h"
 #include "tools/app/history/history.h"
 
 namespace leviosim::tools {

@@ -7,12 +7,10 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
-#include "traces/datasets/camera_model.h"
-#include "traces/datasets/image_preparation.h"
+#include "traces/datasets/image_source.h"
 
 namespace leviosim::tools {
 
@@ -58,25 +56,5 @@ class FeatureTracker {
   std::unique_ptr<View> last_;
   FeatureTracks result_;
 };
-
-// How features that were followed agree with the true poses: the point of each track is where the
-// true rays meet best (robust least squares of reprojection errors, three unknowns); what is left
-// is the error of the observations, and how deep the point lies.
-
-struct TrackGeometry {
-  std::vector<Eigen::Vector2d> errors;  ///< observed minus projected, of each observation [px]
-  std::vector<double> depths;           ///< of each observation [m]; empty without parallax
-};
-
-/// Tracks of fewer observations fit whatever was observed.
-inline constexpr std::size_t kFewestObservations = 4;
-/// Of the rays of a track, without which it has no depth. [rad]
-inline constexpr double kLeastParallax = 0.0175;
-
-/// Nothing of a track that is too short or meets nowhere in front of its cameras.
-/// @param T_world_camera  true poses by frame
-std::optional<TrackGeometry> track_geometry(const Track& track,
-                                            const std::vector<Eigen::Isometry3d>& T_world_camera,
-                                            const traces::PinholeIntrinsics& camera);
 
 }  // namespace leviosim::tools

@@ -6,6 +6,8 @@
 
 #include "sim/energy/area.h"
 #include "sim/work/counts.h"
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/energy_summary.h"
 #include "tools/app/result/summary.h"
 
 namespace leviosim::tools {

@@ -9,6 +9,7 @@
 #include "tools/app/record/statistic_list.h"
 #include "tools/app/result/run_figures.h"
 #include "tools/app/result/run_result.h"
+#include "traces/trajectories/attitude_errors.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory_errors.h"
 

@@ -7,11 +7,20 @@
 #include <string_view>
 #include <utility>
 
+#include "sim/base/printable.h"
 #include "sim/base/text.h"
+#include "tools/app/budget/figures.h"
+#include "tools/app/cli/screen.h"
 #include "tools/app/record/statistics.h"
+#include "tools/app/report/accuracy_text.h"
 #include "tools/app/report/tables.h"
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/energy_summary.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/result/verdict.h"
+#include "tools/app/table/cell.h"
+#include "tools/app/table/table.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {

@@ -2,14 +2,10 @@
 // and a line for each of latency, memory, energy and trajectory, on a screen of 24 lines.
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
+#include "tools/app/cli/screen.h"
 #include "tools/app/result/run_result.h"
-#include "tools/app/table/terminal_table.h"
-#include "traces/trajectories/evaluation.h"
-#include "traces/trajectories/trajectory_errors.h"
 
 namespace leviosim::tools {
 
@@ -23,8 +19,6 @@ std::string verdict(const RunResult& run);
 /// @param others   lines of the screen that others take
 std::string run_summary(const std::string& heading, const RunResult& run, int width,
                         int others = 0);
-
-// What a run showed of its frames and its trajectory, as text. Pure functions of the result.
 
 /// Mean and worst latency of the kinds of frame, against the frame period.
 std::string latency_table(const RunResult& run, int width = table_width());
@@ -44,20 +38,5 @@ std::string host_line(const RunResult& run);
 
 /// "warning: map lost: …"; empty where the map is good (tools/app/result/verdict.h).
 std::string map_warning(const RunResult& run);
-
-// Accuracy as text. Every command that reports it does so through these, so that a figure looks the
-// same everywhere and never goes without its protocol.
-
-/// "ATE: … m RMSE (…)", the protocol in a second line, and attitude_text() in a third.
-std::string ate_text(const traces::Evaluation& evaluation);
-
-/// "attitude: tilt …° RMSE, heading …° RMSE", after an alignment of the attitudes, and whether the
-/// estimate knows the vertical. Empty where the evaluation holds no poses.
-std::string attitude_text(const traces::Evaluation& evaluation);
-
-/// A row per length that has sub-trajectories, with the protocol below, and a line that names the
-/// lengths that are too long for the path. Empty for no lengths.
-std::string relative_text(const traces::Evaluation& evaluation,
-                          const std::vector<traces::RelativeErrors>& errors);
 
 }  // namespace leviosim::tools

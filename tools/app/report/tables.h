@@ -6,10 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/energy/area.h"
-#include "tools/app/report/run_summary.h"
+#include "tools/app/cli/screen.h"
 #include "tools/app/result/run_result.h"
-#include "tools/app/table/terminal_table.h"
+#include "tools/app/table/table.h"
 
 namespace leviosim::tools {
 
@@ -42,26 +41,5 @@ std::string report(const RunResult& run, const std::vector<std::string>& names =
 /// Per cent with one decimal that add up to 100.0: each part is rounded down, and the largest
 /// remainders are rounded up. All zero if the parts add up to nothing.
 std::vector<double> tenths_of_percent(const std::vector<double>& parts);
-
-// The text about energy that `leviosim run` prints. Pure functions of the result; empty where the
-// platform has no energy figures. Columns that do not fit into the width are left out.
-
-/// Energy of a call and power while it runs, with bands, for every stage and the idle time; energy
-/// per frame, mean power, and power while the front end runs.
-std::string energy_table(const RunResult& run, int width = table_width());
-
-/// Mean power of the stages by domain of the chip.
-std::string power_table(const RunResult& run, int width = table_width());
-
-/// Energy per frame and mean power at the ends of the supply's line, with the same cycles.
-std::string operating_point_table(const RunResult& run, int width = table_width());
-
-// What a chip occupies, part by part, as a table for terminals and as CSV.
-
-/// Parts with number, size, band and share; then cluster and chip. The chip must have areas.
-std::string area_table(const sim::ChipConfig& chip, int width = table_width());
-
-/// The same rows, in um2.
-Table area_rows(const sim::ChipConfig& chip);
 
 }  // namespace leviosim::tools

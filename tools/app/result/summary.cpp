@@ -8,6 +8,8 @@
 
 #include "sim/base/check.h"
 #include "sim/chip/accelerator.h"
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/energy_summary.h"
 
 namespace leviosim::tools {
 namespace {

@@ -1,14 +1,16 @@
 #include "tools/app/run/flight_cache.h"
 
 #include <fcntl.h>
+
 #include <fmt/core.h>
 
 #include <chrono>
 
 #include "sim/base/error.h"
+#include "sim/base/interruption.h"
 #include "sim/outputs/growing_file.h"
 #include "sim/outputs/output_record.h"
-#include "tools/app/cli/host.h"
+#include "tools/app/cli/cache_folder.h"
 #include "tools/app/cli/version.h"
 
 namespace leviosim::tools {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/progress_line.h"
 #include "traces/synthesis/rendered_flight.h"
 #include "traces/synthesis/synthetic.h"
 

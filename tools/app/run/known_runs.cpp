@@ -6,6 +6,8 @@
 
 #include "sim/base/check.h"
 #include "sim/chip/same_cycles.h"
+#include "tools/app/run/run_observer.h"
+#include "tools/app/run/simulate.h"
 
 namespace leviosim::tools {
 namespace {

@@ -11,7 +11,7 @@
 #include <mutex>
 #include <vector>
 
-#include "tools/app/run/trace_source.h"
+#include "tools/app/run/replay.h"
 
 namespace leviosim::tools {
 

@@ -5,11 +5,13 @@
 
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/progress_line.h"
 #include "tools/app/record/measured.h"
+#include "tools/app/run/max_memory.h"
+#include "tools/app/run/replay.h"
+#include "tools/app/run/replay_report.h"
 #include "tools/app/run/run_session.h"
-#include "tools/app/run/trace_source.h"
-#include "tools/app/run/workload.h"
+#include "tools/app/run/workload_options.h"
 
 namespace leviosim::tools {
 namespace {

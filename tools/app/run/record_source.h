@@ -6,6 +6,7 @@
 
 #include "tools/app/record/record.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/run_options.h"
 #include "tools/app/run/run_request.h"
 #include "traces/work_traces/work_trace.h"
 

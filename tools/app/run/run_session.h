@@ -8,13 +8,13 @@
 
 #include "sim/outputs/output_place.h"
 #include "tools/app/cli/command_line.h"
-#include "tools/app/cli/outputs.h"
-#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/progress_line.h"
 #include "tools/app/result/run_result.h"
-#include "tools/app/run/run_folder.h"
+#include "tools/app/run/manifest.h"
+#include "tools/app/run/recording_source.h"
+#include "tools/app/run/run_options.h"
 #include "tools/app/run/run_request.h"
-#include "tools/app/run/simulate.h"
-#include "tools/app/run/trace_source.h"
+#include "tools/app/run/run_source.h"
 
 namespace leviosim::tools {
 
@@ -63,19 +63,5 @@ Manifest replay_manifest(const traces::WorkTrace& trace, const InputDigest& dige
 
 /// "leviosim 0.1.0: levio on gap9, 300 frames of DIR, 160x120, 8 cores at 370 MHz, …"
 std::string heading(const RunOptions& options, const RunResult& run);
-
-// What commands that run a workload print of it: the summary, the tables that --tables names, or
-// with --json the record.
-
-/// Declares --tables and --json.
-void add_print_options(CLI::App& command, RunOptions& options);
-
-/// @param budget  that the command checks, whose outcome is text; empty if there is none
-/// @throws InputError for tables that there are not, and for text and JSON at once
-void check_print_options(const RunOptions& options, const std::string& budget);
-
-/// @param remarks  that stand between heading and tables
-Printout run_printout(const RunOptions& options, const RunResult& run, const RunRecord& record,
-                      const std::string& remarks = {});
 
 }  // namespace leviosim::tools

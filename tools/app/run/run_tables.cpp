@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "sim/work/op.h"
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/energy_summary.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/run_folder.h"
 

@@ -7,14 +7,17 @@
 #include <map>
 #include <utility>
 
-#include "platform_models/loader/schema.h"
+#include "platform_models/loader/units.h"
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/base/nearest_name.h"
 #include "sim/base/text.h"
 #include "sim/soc/job_timer.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/run/feed.h"
 #include "tools/app/run/live_source.h"
 #include "tools/app/run/run_folder.h"
+#include "tools/app/run/workload_options.h"
 
 namespace leviosim::tools {
 namespace {

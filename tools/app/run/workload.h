@@ -4,13 +4,12 @@
 
 #include <functional>
 #include <memory>
-#include <string>
 #include <string_view>
 #include <vector>
 
 #include "platform_models/loader/compiled_code.h"
 #include "tools/app/run/run_request.h"
-#include "tools/app/run/simulate.h"
+#include "tools/app/run/run_source.h"
 #include "workload/vio/odometry/odometry.h"
 #include "workload/vio/parameters.h"
 #include "workload/vio/records.h"
@@ -65,30 +64,3 @@ std::vector<vio::StageName> stages_of(const RunRequest& request);
 
 }  // namespace tools
 }  // namespace leviosim
-
-// Parameters of the workload on the command line: "-p workload.window=6", beside those of the chip.
-
-namespace leviosim::tools {
-
-struct SplitOverrides {
-  std::vector<std::string> chip;
-  std::vector<std::string> workload;  ///< those that begin with "workload."
-};
-SplitOverrides split_overrides(const std::vector<std::string>& overrides);
-
-/// @throws InputError for unknown names, with the nearest valid one, for values that the parameter
-///         cannot have, and for parameters given twice
-std::vector<vio::Assignment> parse_workload_overrides(const std::vector<std::string>& overrides);
-
-/// The parameter of that name. @throws InputError, which begins with `where`, if there is none
-const vio::Parameter& workload_parameter(const std::string& where, const std::string& name);
-
-/// A value of the parameter: a number, or off or on for a toggle; its unit may follow.
-/// @throws InputError, which begins with `where`
-double parse_workload_value(const std::string& where, const vio::Parameter& parameter,
-                            const std::string& text);
-
-/// "a whole number of keyframes from 2 to 32", "off or on".
-std::string valid_values(const vio::Parameter& parameter);
-
-}  // namespace leviosim::tools

@@ -13,7 +13,7 @@
 
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
 
 namespace leviosim::tools {
 

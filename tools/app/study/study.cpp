@@ -4,6 +4,14 @@
 
 #include <utility>
 
+#include "sim/outputs/output_folder.h"
+#include "tools/app/cli/exit_status.h"
+#include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_option.h"
+#include "tools/app/html_report/study_page.h"
+
 namespace leviosim::tools {
 namespace {
 

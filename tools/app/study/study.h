@@ -11,10 +11,9 @@
 #include <vector>
 
 #include "tools/app/cli/command_line.h"
-#include "tools/app/cli/outputs.h"
-#include "tools/app/html_report/page.h"
-#include "tools/app/run/run_request.h"
-#include "tools/app/study/engine.h"
+#include "tools/app/html_report/study_page.h"
+#include "tools/app/run/run_options.h"
+#include "tools/app/study/runner.h"
 #include "tools/app/table/table_files.h"
 
 namespace leviosim::tools {

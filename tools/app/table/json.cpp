@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "sim/base/interruption.h"
-#include "sim/base/text.h"
+#include "sim/base/printable.h"
 
 namespace leviosim::tools {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/base/text.h"
+#include "sim/base/printable.h"
 
 namespace leviosim::tools {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/screen.h"
 #include "tools/app/table/table.h"
 
 namespace leviosim::tools {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tools/app/timeline/waits.h"
+
 namespace leviosim::tools {
 namespace {
 

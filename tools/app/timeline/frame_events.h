@@ -16,7 +16,7 @@
 #include "sim/events/timebase.h"
 #include "sim/work/program.h"
 #include "tools/app/result/run_result.h"
-#include "traces/datasets/dataset.h"
+#include "traces/datasets/frame_range.h"
 
 namespace leviosim::tools {
 

@@ -1,4 +1,4 @@
-#include "tools/app/timeline/requested_timeline.h"
+#include "tools/app/timeline/timeline_picture.h"
 
 #include <fmt/format.h>
 
@@ -11,11 +11,14 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/base/printable.h"
 #include "sim/base/text.h"
 #include "sim/chip/accelerator.h"
-#include "tools/app/cli/terminal.h"
-#include "tools/app/result/summary.h"
+#include "tools/app/cli/screen.h"
+#include "tools/app/result/camera_figures.h"
+#include "tools/app/result/energy_summary.h"
 #include "tools/app/timeline/core_slices.h"
+#include "tools/app/timeline/waits.h"
 
 namespace leviosim::tools {
 namespace {

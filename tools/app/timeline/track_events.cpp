@@ -1,7 +1,8 @@
 #include "tools/app/timeline/track_events.h"
 
 #include "sim/base/check.h"
-#include "sim/base/text.h"
+#include "sim/base/printable.h"
+#include "tools/app/timeline/protobuf_writer.h"
 
 namespace leviosim::tools {
 namespace {
@@ -10,56 +11,105 @@ namespace {
 namespace trace {
 constexpr int kPacket = 1;
 }
+
 namespace packet {
+
 constexpr int kTimestamp = 8;
+
 constexpr int kSequence = 10;
+
 constexpr int kTrackEvent = 11;
+
 constexpr int kInternedData = 12;
+
 constexpr int kSequenceFlags = 13;
+
 constexpr int kTrackDescriptor = 60;
+
 }  // namespace packet
+
 namespace descriptor {
+
 constexpr int kNumber = 1;
+
 constexpr int kName = 2;
+
 constexpr int kProcess = 3;
+
 constexpr int kParent = 5;
+
 constexpr int kCounter = 8;
+
 constexpr int kChildOrdering = 11;
+
 constexpr int kRank = 12;
+
 constexpr int kProcessId = 1;
+
 constexpr int kProcessName = 6;
+
 constexpr int kCounterUnit = 3;
+
 constexpr int kCounterUnitName = 6;
+
 }  // namespace descriptor
+
 namespace event {
+
 constexpr int kAnnotation = 4;
+
 constexpr int kType = 9;
+
 constexpr int kNameNumber = 10;
+
 constexpr int kTrack = 11;
+
 constexpr int kName = 23;
+
 constexpr int kCounterValue = 30;
+
 constexpr int kCounterDouble = 44;
+
 constexpr int kFlow = 47;
+
 constexpr int kFlowEnd = 48;
+
 }  // namespace event
+
 namespace annotation {
+
 constexpr int kNameNumber = 1;
+
 constexpr int kBool = 2;
+
 constexpr int kInt = 4;
+
 constexpr int kDouble = 5;
+
 constexpr int kText = 6;
+
 }  // namespace annotation
+
 namespace interned {
+
 constexpr int kEventName = 2;
+
 constexpr int kAnnotationName = 3;
+
 constexpr int kNumber = 1;
+
 constexpr int kName = 2;
+
 }  // namespace interned
 
 constexpr std::uint64_t kSequenceNumber = 1;
+
 constexpr std::uint64_t kStateCleared = 1;
+
 constexpr std::uint64_t kNeedsState = 2;
+
 constexpr std::uint64_t kExplicitOrder = 3;
+
 constexpr std::uint64_t kUnitBytes = 3;
 
 enum Type : int { kSliceBegin = 1, kSliceEnd = 2, kInstant = 3, kCounter = 4 };

@@ -7,7 +7,14 @@
 
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/nearest_name.h"
+#include "tools/app/table/json.h"
+#include "tools/app/validation/as_released.h"
+#include "tools/app/validation/distributions.h"
+#include "tools/app/validation/inputs.h"
+#include "tools/app/validation/paper_stages.h"
+#include "tools/app/validation/published_files.h"
+#include "tools/app/validation/quantities.h"
 #include "workload/vio/profile.h"
 #include "workload/vio/stages.h"
 

@@ -1,4 +1,4 @@
-#include "tools/app/validation/validation.h"
+#include "tools/app/validation/validation_report.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,12 @@
 #include <cmath>
 
 #include "tools/app/table/terminal_table.h"
-#include "tools/app/validation/frame_log.h"
+#include "tools/app/validation/as_released.h"
+#include "tools/app/validation/distributions.h"
+#include "tools/app/validation/inputs.h"
+#include "tools/app/validation/paper_stages.h"
+#include "tools/app/validation/paths.h"
+#include "tools/app/validation/validation.h"
 
 namespace leviosim::tools {
 namespace {

@@ -9,11 +9,12 @@
 #include <numeric>
 
 #include "sim/base/check.h"
+#include "sim/chip/chip.h"
 #include "sim/chip/timing.h"
 #include "sim/events/timebase.h"
 #include "sim/soc/run_account.h"
 #include "sim/work/program.h"
-#include "tools/app/cli/terminal.h"
+#include "tools/app/cli/screen.h"
 #include "tools/app/result/summary.h"
 #include "workload/vio/frame_facts.h"
 

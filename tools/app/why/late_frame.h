@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/main_causes.h"
-#include "tools/app/run/simulate.h"
+#include "tools/app/run/run_observer.h"
 
 namespace leviosim::tools {
 

@@ -1,6 +1,7 @@
 #include "workload/levio/geometry/epnp.h"
 
 #include "workload/levio/geometry/epnp_starts.h"
+#include "workload/levio/geometry/jacobi.h"
 #include "workload/levio/geometry/pose_matrix.h"
 #include "workload/levio/geometry/svd.h"
 

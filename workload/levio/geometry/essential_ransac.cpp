@@ -1,6 +1,7 @@
 #include "workload/levio/geometry/essential_ransac.h"
 
 #include "sim/base/check.h"
+#include "workload/levio/geometry/eight_point.h"
 #include "workload/levio/geometry/levio_inverse_power.h"
 #include "workload/levio/geometry/svd.h"
 

@@ -8,6 +8,7 @@
 #include "workload/math/compilers.h"
 #include "workload/math/kernel_kinds.h"
 #include "workload/math/matrix.h"
+#include "workload/math/target_compiler.h"
 
 namespace leviosim::vio::levio {
 

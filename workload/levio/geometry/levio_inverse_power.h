@@ -12,9 +12,9 @@
 // unit vector is not a number, which ends the iteration.
 #pragma once
 
-#include "workload/math/compilers.h"
 #include "workload/math/kernel_kinds.h"
 #include "workload/math/matrix.h"
+#include "workload/math/target_compiler.h"
 
 namespace leviosim::vio::levio {
 

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "sim/work/policy.h"
-#include "workload/math/compilers.h"
+#include "workload/math/target_compiler.h"
 
 namespace leviosim::vio::levio {
 

@@ -5,6 +5,7 @@
 #include "workload/levio/geometry/levio_inverse_power.h"
 #include "workload/levio/geometry/pose_matrix.h"
 #include "workload/levio/geometry/svd.h"
+#include "workload/levio/geometry/two_view_point.h"
 
 namespace leviosim::vio::levio {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "workload/math/compilers.h"
 #include "workload/math/matrix.h"
+#include "workload/math/target_compiler.h"
 
 namespace leviosim::vio::levio {
 

@@ -3,9 +3,9 @@
 // divisions and n roots, and solving two more divisions for each.
 #pragma once
 
-#include "workload/math/compilers.h"
 #include "workload/math/kernel_kinds.h"
 #include "workload/math/matrix.h"
+#include "workload/math/target_compiler.h"
 
 namespace leviosim::vio::levio {
 

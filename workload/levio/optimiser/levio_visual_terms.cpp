@@ -4,6 +4,7 @@
 
 #include "workload/graph/landmark_records.h"
 #include "workload/math/compilers.h"
+#include "workload/math/target_compiler.h"
 
 namespace leviosim::vio::levio {
 namespace {

@@ -6,6 +6,7 @@
 #include "workload/levio/vision/corner_tests.h"
 #include "workload/levio/vision/levio_blur.h"
 #include "workload/levio/vision/levio_descriptor.h"
+#include "workload/levio/vision/offset_tables.h"
 #include "workload/vision/extraction_steps.h"
 #include "workload/vision/host_kernels.h"
 

@@ -1,6 +1,7 @@
 #include "workload/levio/vision/levio_matcher.h"
 
 #include "workload/math/compilers.h"
+#include "workload/math/target_compiler.h"
 #include "workload/vision/two_way_matching.h"
 
 namespace leviosim::vio::levio {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "workload/next/loop/densest_place.h"
 #include "workload/next/loop/loop_graph.h"
+#include "workload/next/loop/view_signature.h"
 
 namespace leviosim::vio {
 namespace {

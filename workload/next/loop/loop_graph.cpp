@@ -1,6 +1,7 @@
 #include "workload/next/loop/loop_graph.h"
 
 #include "sim/base/check.h"
+#include "workload/next/loop/densest_place.h"
 
 namespace leviosim::vio {
 namespace {

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "sim/base/check.h"
+#include "workload/next/loop/place_matching.h"
+#include "workload/next/loop/view_signature.h"
 #include "workload/vision/slices.h"
 
 namespace leviosim::vio {

@@ -1,5 +1,8 @@
 #include "workload/next/loop/place_store.h"
 
+#include "workload/next/loop/view_signature.h"
+#include "workload/vision/features.h"
+
 namespace leviosim::vio {
 
 template <class P>

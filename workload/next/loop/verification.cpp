@@ -1,6 +1,6 @@
 #include "workload/next/loop/verification.h"
 
-#include "workload/next/loop/place_search.h"
+#include "workload/next/loop/place_matching.h"
 #include "workload/next/loop/upright_pose.h"
 #include "workload/vision/guided_matcher.h"
 

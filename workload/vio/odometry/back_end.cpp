@@ -10,6 +10,7 @@
 #include "workload/graph/carried_poses.h"
 #include "workload/graph/departing_visual_terms.h"
 #include "workload/levio/optimiser/levio_optimiser.h"
+#include "workload/vio/odometry/map_health.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {

@@ -4,6 +4,7 @@
 #include "workload/next/loop/loop_closer.h"
 #include "workload/next/next_front_end.h"
 #include "workload/vio/odometry/back_end.h"
+#include "workload/vio/odometry/map_health.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {

@@ -6,8 +6,10 @@
 
 #include "sim/work/machine.h"
 #include "tests/workload/next/loop/loop_world.h"
+#include "workload/next/loop/densest_place.h"
 #include "workload/next/loop/loop_graph.h"
-#include "workload/next/loop/place_search.h"
+#include "workload/next/loop/place_matching.h"
+#include "workload/next/loop/view_signature.h"
 
 namespace leviosim::vio::test {
 namespace {

@@ -8,13 +8,10 @@
 #include <vector>
 
 #include "tools/app/cli/command_line.h"
-#include "tools/app/study/accuracy_study.h"
-#include "tools/app/study/engine.h"
+#include "tools/app/study/spread.h"
 #include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
-
-// Which parameters of the workload an exploration varies, and the points that it looks at.
 
 struct Dimension {
   const vio::Parameter* parameter;

@@ -1,3 +1,5 @@
+#include "tools/app/study/flights/benchmark_report.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -6,13 +8,20 @@
 #include <set>
 
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/printable.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_option.h"
+#include "tools/app/html_report/study_page.h"
 #include "tools/app/record/statistic_list.h"
 #include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/batch_plan.h"
+#include "tools/app/study/finished_runs.h"
 #include "tools/app/study/flights/benchmark.h"
+#include "tools/app/study/flights/benchmark_files.h"
+#include "tools/app/study/flights/flight_plan.h"
+#include "tools/app/study/flights/piece_figures.h"
 #include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {

@@ -14,10 +14,8 @@
 #include <vector>
 
 #include "platform_models/loader/variants.h"
-#include "tools/app/cli/command_line.h"
-#include "tools/app/study/engine.h"
+#include "tools/app/study/runner.h"
 #include "tools/app/table/banded.h"
-#include "tools/app/table/table_files.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
@@ -68,17 +66,5 @@ std::vector<StageBand> stage_bands(const Sensitivity& sensitivity);
 
 Sensitivity sensitivity(const platform::Variants& platform, int workers,
                         const traces::WorkTrace& trace, const RunnerOptions& options);
-
-// The table and the file of `leviosim sensitivity`.
-
-/// The largest effects first; numbers without any effect are only named.
-/// As parts of a screen.
-std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int workers);
-
-/// A row per number with both ends of its range, times in ms, changes in per cent.
-Table sensitivity_rows(const Sensitivity& sensitivity);
-
-/// `leviosim sensitivity` (tools/commands/commands.h).
-Command add_sensitivity_command(CLI::App& app, const Words& words);
 
 }  // namespace leviosim::tools

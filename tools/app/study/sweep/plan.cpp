@@ -1,4 +1,4 @@
-#include "tools/app/study/sweep/points.h"
+#include "tools/app/study/sweep/plan.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,9 @@
 #include "sim/base/input_file.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/run/yaml_map.h"
+#include "tools/app/study/sweep/domain.h"
+#include "tools/app/study/sweep/sweep_inputs.h"
+#include "tools/app/study/sweep/sweep_key.h"
 
 namespace leviosim::tools {
 namespace {

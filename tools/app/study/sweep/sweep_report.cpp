@@ -3,23 +3,32 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <map>
 #include <memory>
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "sim/base/text.h"
+#include "sim/base/interruption.h"
+#include "sim/base/printable.h"
+#include "tools/app/cli/exit_status.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_option.h"
+#include "tools/app/html_report/study_page.h"
 #include "tools/app/record/statistic_list.h"
 #include "tools/app/run/known_runs.h"
-#include "tools/app/run/run_request.h"
-#include "tools/app/study/engine.h"
+#include "tools/app/run/max_memory.h"
+#include "tools/app/study/runner.h"
+#include "tools/app/study/sweep/pareto_front.h"
+#include "tools/app/study/sweep/plan.h"
+#include "tools/app/study/sweep/point_run.h"
 #include "tools/app/study/sweep/points.h"
+#include "tools/app/study/sweep/sweep_check.h"
+#include "tools/app/study/sweep/sweep_folder.h"
+#include "tools/app/study/sweep/sweep_inputs.h"
 #include "tools/app/study/sweep/sweep_store.h"
 #include "tools/app/table/terminal_table.h"
 
@@ -150,24 +159,6 @@ std::string sweep_report(SweepStore& store) {
   for (std::size_t i = 0; i < known.size(); ++i)
     text += fmt::format("{}{}", i == 0 ? "" : ", ", kObjectives[known[i]].title);
   return text + " and as good in the others\n" + front_table(store, front, known);
-}
-
-using Values = std::array<double, kObjectives.size()>;
-
-Values values_of(const SweepOutcome& outcome) {
-  Values values{};
-  for (std::size_t k = 0; k < values.size(); ++k)
-    values[k] = outcome.objectives[k].value_or(std::numeric_limits<double>::infinity());
-  return values;
-}
-
-bool dominates(const Values& a, const Values& b) {
-  bool better = false;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    if (a[k] > b[k]) return false;
-    better = better || a[k] < b[k];
-  }
-  return better;
 }
 
 /// "platform.cluster.clock" → "cluster.clock".
@@ -439,33 +430,6 @@ void run(const CLI::App& command, const SweepWords& words) {
 }
 
 }  // namespace
-
-bool dominates(const SweepOutcome& a, const SweepOutcome& b) {
-  return dominates(values_of(a), values_of(b));
-}
-
-std::vector<SweepOutcome> pareto_front(const std::vector<SweepOutcome>& outcomes) {
-  struct Candidate {
-    Values values;
-    const SweepOutcome* outcome;
-  };
-  std::vector<Candidate> sorted;
-  for (const SweepOutcome& o : outcomes)
-    if (o.failure.empty()) sorted.push_back({values_of(o), &o});
-  std::sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) {
-    return a.values != b.values ? a.values < b.values : a.outcome->point < b.outcome->point;
-  });
-  // What dominates a point comes before it, and if that is dominated itself, so does what is on the
-  // front: each has to be compared with the front so far only.
-  std::vector<Candidate> front;
-  for (const Candidate& c : sorted)
-    if (std::none_of(front.begin(), front.end(),
-                     [&](const Candidate& f) { return dominates(f.values, c.values); }))
-      front.push_back(c);
-  std::vector<SweepOutcome> result;
-  for (const Candidate& c : front) result.push_back(*c.outcome);
-  return result;
-}
 
 Command add_sweep_command(CLI::App& app, const Words&) {
   CLI::App* command = app.add_subcommand(

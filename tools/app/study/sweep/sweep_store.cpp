@@ -6,7 +6,7 @@
 #include <chrono>
 #include <numeric>
 
-#include "platform_models/loader/schema.h"
+#include "platform_models/loader/units.h"
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
@@ -16,6 +16,7 @@
 #include "sim/outputs/growing_file.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/record/json_reader.h"
+#include "tools/app/table/table_files.h"
 
 namespace leviosim::tools {
 namespace {

@@ -25,10 +25,9 @@
 #include <vector>
 
 #include "sim/base/opened_file.h"
-#include "sim/outputs/output_folder.h"
-#include "tools/app/budget/budget.h"
-#include "tools/app/cli/command_line.h"
+#include "sim/outputs/output_file.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/study/sweep/point_run.h"
 #include "tools/app/study/sweep/points.h"
 
 namespace leviosim::tools {
@@ -136,34 +135,5 @@ class SweepStore {
 bool is_sweep(const std::filesystem::path& folder);
 /// @throws InputError if the folder holds a sweep of an earlier version only, saying what to do
 void refuse_old_sweep(const std::filesystem::path& folder);
-
-// The points of a sweep that no other is better than in every respect.
-
-/// Whether `a` is at least as good as `b` in every objective and better in one. Less is better, and
-/// what is missing is worse than any number.
-bool dominates(const SweepOutcome& a, const SweepOutcome& b);
-
-/// The outcomes that no other dominates, those that failed left out; by latency, then number.
-std::vector<SweepOutcome> pareto_front(const std::vector<SweepOutcome>& outcomes);
-
-// The points of a sweep held against a budget (tools/app/budget): every finished point must meet
-// every limit that is for it. Limits with a sign are relative to the first point of the plan.
-//
-// Left out: reasons by mechanism, for which a sweep keeps too little; compare has them.
-
-struct SweepCheck {
-  std::size_t held = 0;
-  std::size_t missed = 0;  ///< points with a limit that is not met, or that cannot run
-  std::string verdict;     ///< in a sentence
-  std::string text;        ///< how many, and a table of them
-};
-
-/// @throws InputError for figures that the points do not have, Interrupted
-SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
-                       const std::vector<SweepPoint>& points, SweepInputs& inputs,
-                       SweepStore& store);
-
-/// `leviosim sweep` (tools/commands/commands.h).
-Command add_sweep_command(CLI::App& app, const Words& words);
 
 }  // namespace leviosim::tools

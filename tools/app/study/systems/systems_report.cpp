@@ -9,12 +9,16 @@
 #include "platform_models/loader/loader.h"
 #include "sim/base/csv.h"
 #include "tools/app/flow/flow.h"
-#include "tools/app/html_report/page.h"
-#include "tools/app/result/summary.h"
+#include "tools/app/flow/flow_report.h"
+#include "tools/app/html_report/study_page.h"
+#include "tools/app/result/energy_summary.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/study/feasibility/feasibility.h"
+#include "tools/app/study/feasibility/feasibility_report.h"
+#include "tools/app/study/systems/predictions.h"
+#include "tools/app/study/systems/published_systems.h"
 #include "tools/app/table/terminal_table.h"
-#include "tools/app/validation/references.h"
+#include "tools/app/validation/published_files.h"
 
 namespace leviosim::tools {
 namespace {

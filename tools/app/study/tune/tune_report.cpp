@@ -1,3 +1,5 @@
+#include "tools/app/study/tune/tune_report.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -7,18 +9,25 @@
 #include <memory>
 
 #include "sim/base/error.h"
-#include "sim/base/text.h"
+#include "sim/base/interruption.h"
+#include "sim/base/printable.h"
 #include "tools/app/budget/gate.h"
+#include "tools/app/cli/exit_status.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/cli/printout.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/report_option.h"
+#include "tools/app/html_report/study_page.h"
 #include "tools/app/record/record.h"
 #include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/batch_plan.h"
+#include "tools/app/study/finished_runs.h"
+#include "tools/app/study/tune/tune_plan.h"
 #include "tools/app/study/tune/tuning.h"
 #include "tools/app/table/terminal_table.h"
 

@@ -9,16 +9,19 @@
 #include <mutex>
 
 #include "platform_models/loader/instruction_set.h"
-#include "platform_models/loader/value.h"
+#include "platform_models/loader/parameter.h"
 #include "sim/base/error.h"
+#include "sim/base/interruption.h"
+#include "sim/base/nearest_name.h"
 #include "sim/base/text.h"
 #include "sim/energy/area.h"
 #include "sim/work/arena.h"
 #include "sim/work/offload_regions.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/record/statistics.h"
+#include "tools/app/result/energy_summary.h"
+#include "tools/app/run/replay.h"
 #include "tools/app/run/simulate.h"
-#include "tools/app/run/trace_source.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {

@@ -9,18 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/cli/command_line.h"
-#include "tools/app/comparison/comparison.h"
 #include "tools/app/comparison/main_causes.h"
 #include "tools/app/html_report/page.h"
-#include "tools/app/record/record.h"
 #include "tools/app/result/summary.h"
-#include "tools/app/result/verdict.h"
 #include "tools/app/run/known_runs.h"
-#include "tools/app/study/accuracy_study.h"
-#include "tools/app/study/engine.h"
+#include "tools/app/study/runner.h"
+#include "tools/app/study/sweep/plan.h"
 #include "tools/app/study/sweep/points.h"
-#include "tools/app/table/table_files.h"
+#include "tools/app/study/sweep/sweep_inputs.h"
 
 namespace leviosim::tools {
 
@@ -95,15 +91,5 @@ class WhatIf {
   KnownRuns known_;
   std::mutex resolving_;  ///< inputs_ remembers what it has read
 };
-
-// What if, for people and programs: text of 80 columns, CSV, and a page with bars.
-
-/// A bar a variant: the time of a mean frame, and its energy.
-std::string whatif_bars(const std::vector<VariantResult>& results);
-
-Table whatif_rows(const std::vector<VariantResult>& results);
-
-/// `leviosim whatif` (tools/commands/commands.h).
-Command add_whatif_command(CLI::App& app, const Words& words);
 
 }  // namespace leviosim::tools

@@ -1,3 +1,5 @@
+#include "tools/app/study/whatif/whatif_report.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -10,12 +12,14 @@
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
-#include "sim/base/text.h"
-#include "tools/app/cli/outputs.h"
+#include "sim/base/printable.h"
+#include "tools/app/html_report/key_figures.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/record/record.h"
 #include "tools/app/record/statistic_list.h"
+#include "tools/app/run/max_memory.h"
 #include "tools/app/run/record_source.h"
+#include "tools/app/run/run_options.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/study/study.h"

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "sim/base/text.h"
+#include "sim/base/printable.h"
 #include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {

@@ -12,8 +12,6 @@ namespace leviosim::tools {
 /// Why a variant takes another time: "waiting for code -11.2 ms, most in EPnP RANSAC".
 std::string reason_of(const VariantResult& base, const VariantResult& variant);
 
-// Of results, the first of which is the run as it is.
-
 /// The fastest variant, or that none can run, in a sentence.
 std::string whatif_conclusion(const std::vector<VariantResult>& results);
 

@@ -7,6 +7,7 @@
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "tools/app/table/terminal_table.h"
+#include "tools/app/validation/paper_stages.h"
 #include "tools/app/validation/references.h"
 
 namespace leviosim::tools {

@@ -2,9 +2,15 @@
 
 #include <fmt/format.h>
 
+#include "sim/base/csv.h"
 #include "sim/base/interruption.h"
-#include "tools/app/run/range_bands.h"
+#include "sim/chip/chip.h"
+#include "sim/chip/timing.h"
 #include "tools/app/table/terminal_table.h"
+#include "tools/app/validation/microbench/microbench_report.h"
+#include "tools/app/validation/microbench/microbench_row.h"
+#include "tools/app/validation/microbench/reference_rows.h"
+#include "tools/app/validation/published_files.h"
 
 namespace leviosim::tools {
 namespace {
@@ -20,8 +26,6 @@ work::MachineConfig machine_of(const sim::ChipConfig& chip, int workers,
           .record = true,
           .code = code};
 }
-
-constexpr const char* kUnmeasured = "isa.unmeasured_instructions";
 
 const std::vector<std::string> kColumns = {"group",     "name",           "cores",     "unit",
                                            "reference", "reference_high", "tolerance", "source"};
@@ -142,50 +146,6 @@ double stream_cycles(const sim::ChipConfig& chip, int cores, int slots,
   Bench bench(chip, cores);
   const double empty = static_cast<double>(bench.fork([](work::Core&) {}).cycles.count());
   return (static_cast<double>(bench.fork(body).cycles.count()) - empty) / slots;
-}
-
-double KernelJob::cycles_on(const sim::ChipConfig& chip) const {
-  const Bench bench(chip, row.cores);
-  const auto cycles = [&](const work::Job& some) {
-    return some.stages.empty() ? 0 : static_cast<double>(bench.time(some).cycles.count());
-  };
-  return calls * (cycles(job) - cycles(left_out));
-}
-
-std::vector<MicrobenchRow> banded_rows(const std::vector<KernelJob>& kernels,
-                                       const platform::Variants& platform) {
-  const std::vector<Banded> bands = range_bands(platform, [&](const sim::ChipConfig& chip) {
-    std::vector<double> cycles;
-    for (const KernelJob& kernel : kernels) cycles.push_back(kernel.cycles_on(chip));
-    return cycles;
-  });
-  std::vector<MicrobenchRow> rows;
-  for (std::size_t i = 0; i < kernels.size(); ++i) {
-    MicrobenchRow& row = rows.emplace_back(kernels[i].row);
-    row.simulated = bands[i].value;
-    row.band = bands[i];
-  }
-  return rows;
-}
-
-std::vector<double> needed_instructions(const std::vector<KernelJob>& kernels,
-                                        const platform::Variants& platform) {
-  // A core that runs alone takes a line over their number, but for what its caches miss.
-  constexpr double kLess = 0.8;
-  constexpr double kMore = 1.6;
-  constexpr double kMostlyInstructions = 0.5;  // else what is published says little of them
-  const sim::ChipConfig less = platform.config({{kUnmeasured, kLess}});
-  const sim::ChipConfig more = platform.config({{kUnmeasured, kMore}});
-  std::vector<double> needed;
-  for (const KernelJob& kernel : kernels) {
-    if (kernel.row.cores != 1) continue;
-    const double cycles = kernel.cycles_on(less);
-    const double slope = (kernel.cycles_on(more) - cycles) / (kMore - kLess);
-    if (slope < kMostlyInstructions * kernel.row.reference) continue;
-    needed.push_back(kLess + (kernel.row.reference - cycles) / slope);
-  }
-  std::sort(needed.begin(), needed.end());
-  return needed;
 }
 
 std::vector<MicrobenchRow> reference_rows(const std::string& file, std::string_view text,

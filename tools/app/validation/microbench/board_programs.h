@@ -31,8 +31,7 @@ constexpr int kBinaryWords = 4;   ///< of 32 pixels, per row
 constexpr int kBinaryOut = kBinarySize - kWindow + 1;
 constexpr int kNorm = 8;  ///< fraction bits of coefficients
 
-// ---- 2×2 pools: image 112×112 → 56×56, rows [share) of the output ----
-
+/// ---- 2×2 pools: image 112×112 → 56×56, rows [share) of the output ----
 template <class P>
 void max_pool(In<P, Sample> in, Out<P, Sample> out, work::Share rows) {
   using I32 = typename P::I32;
@@ -80,8 +79,7 @@ void average_pool_simd(In<P, work::I16x2<P>> in, Out<P, Sample> out, work::Share
     }
 }
 
-// ---- 5×5 convolution: image 112×112 → 108×108 ----
-
+/// ---- 5×5 convolution: image 112×112 → 108×108 ----
 template <class P>
 void convolve(In<P, Sample> in, In<P, Sample> kernel, Out<P, Sample> out, work::Share rows) {
   using I32 = typename P::I32;
@@ -129,8 +127,7 @@ void convolve_simd(In<P, work::I8x4<P>> in, In<P, work::I8x4<P>> kernel, Out<P, 
   }
 }
 
-// ---- linear layer 1024 → 16, outputs [share) ----
-
+/// ---- linear layer 1024 → 16, outputs [share) ----
 template <class P>
 void linear(In<P, Sample> in, In<P, Sample> weights, Out<P, Sample> out, work::Share outputs) {
   using I32 = typename P::I32;
@@ -154,9 +151,8 @@ void linear_simd(In<P, work::I8x4<P>> in, In<P, work::I8x4<P>> weights, Out<P, S
   }
 }
 
-// ---- 5×5 convolution of a binary image 100×100, 32 pixels a word: +1 per equal pixel, -1 per
-// other one, added to the output 96×96 ----
-
+/// ---- 5×5 convolution of a binary image 100×100, 32 pixels a word: +1 per equal pixel, -1 per
+/// other one, added to the output 96×96 ----
 /// @param filter  25 bits, row by row
 template <class P>
 void xnor_convolve(In<P, typename P::U32> in, typename P::U32 filter, Out<P, Sample> out,

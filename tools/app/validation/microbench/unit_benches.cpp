@@ -1,15 +1,21 @@
 // Memories, instruction caches, synchronisation and transfers.
+#include "tools/app/validation/microbench/unit_benches.h"
+
 #include <fmt/format.h>
 
 #include <array>
 #include <string>
 
 #include "sim/base/error.h"
+#include "sim/chip/account.h"
+#include "sim/chip/timing.h"
 #include "sim/work/half.h"
 #include "sim/work/op.h"
 #include "sim/work/wide.h"
 #include "tools/app/validation/microbench/bench.h"
-#include "tools/app/validation/references.h"
+#include "tools/app/validation/microbench/microbench_row.h"
+#include "tools/app/validation/microbench/reference_rows.h"
+#include "tools/app/validation/published_files.h"
 
 namespace leviosim::tools {
 namespace {

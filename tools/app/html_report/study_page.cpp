@@ -1,0 +1,69 @@
+#include "tools/app/html_report/study_page.h"
+
+#include <algorithm>
+
+#include "tools/app/html_report/page.h"
+#include "tools/app/table/table_files.h"
+
+namespace leviosim::tools {
+namespace {
+
+Json scaled_cells(Json cells, double scale) {
+  if (scale != 1)
+    for (Json& cell : cells)
+      if (cell.is_number()) cell = cell.get<double>() * scale;
+  return cells;
+}
+
+bool is_empty(const Json& cells) {
+  return std::all_of(cells.begin(), cells.end(), [](const Json& cell) { return cell.is_null(); });
+}
+
+}  // namespace
+
+Json study_report(const StudyPage& page) {
+  Json data = report_json(page.title, Json::array());
+  Json& study = data["study"];
+  study["summary"] = page.summary;
+  study["boxes"] = Json::array();
+  for (const StudyBox& box : page.boxes)
+    study["boxes"].push_back({{"good", box.good ? Json(*box.good) : Json(nullptr)},
+                              {"mark", box.mark},
+                              {"sentence", box.sentence},
+                              {"lines", box.lines}});
+  study["best"] = page.best;
+  const Json table = columns_json(page.points);
+  study["columns"] = Json::array();
+  study["table"] = Json::object();
+  for (const Head& column : page.columns.empty() ? page.points.heads() : page.columns) {
+    if (column.title.empty() || !table.contains(column.key) || is_empty(table.at(column.key)))
+      continue;
+    study["columns"].push_back({{"name", column.key},
+                                {"title", column.title},
+                                {"unit", column.unit},
+                                {"kind", column.is_setup ? "setup" : "figure"},
+                                {"more", column.more_is_better}});
+    study["table"][column.key] = scaled_cells(table.at(column.key), column.scale);
+  }
+  const auto known = [&](const std::string& name) { return study["table"].contains(name); };
+  const auto axis = [&](const std::string& wanted, std::size_t other) {
+    if (known(wanted) || study["columns"].empty()) return Json(wanted);
+    return study["columns"][std::min(other, study["columns"].size() - 1)]["name"];
+  };
+  study["axes"] = Json::array({axis(page.x, 0), axis(page.y, 1)});
+  study["colour"] = known(page.colour) ? page.colour : "";
+  study["limits"] = page.limits;
+  if (page.curves && known(page.curves->x) &&
+      (page.curves->series.empty() || known(page.curves->series)))
+    study["curves"] = {{"x", page.curves->x},
+                       {"series", page.curves->series},
+                       {"y", page.curves->y},
+                       {"hint", page.curves->hint},
+                       {"fromZero", page.curves->from_zero},
+                       {"names", page.curves->names},
+                       {"marks", page.curves->marks}};
+  if (page.bars) study["bars"] = {{"of", page.bars->of}, {"figures", page.bars->figures}};
+  return data;
+}
+
+}  // namespace leviosim::tools

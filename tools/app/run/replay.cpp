@@ -1,0 +1,50 @@
+#include "tools/app/run/replay.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "sim/base/error.h"
+#include "sim/chip/accelerator.h"
+#include "tools/app/run/simulate.h"
+#include "tools/app/run/trace_source.h"
+
+namespace leviosim::tools {
+
+void check_cores(const traces::WorkTrace& trace, const RunRequest& request) {
+  const int recorded = trace.info().cores;
+  const int most = request.platform.config.cluster.workers;
+  if (recorded > most)
+    throw InputError(fmt::format(
+        "{}: its work was divided among {} cores; {} has {}, expected as many (cluster.workers={})",
+        trace.name(), recorded, request.platform.name, most, recorded));
+  if (request.cores != recorded)
+    throw InputError(fmt::format(
+        "{}: its work was divided among {} cores, and how a program divides its work among {} is "
+        "not in it; replay with --cores {}, or record again with run --record --cores {}",
+        trace.name(), recorded, request.cores, recorded, request.cores));
+}
+
+platform::ResolvedPlatform recorded_platform(const traces::WorkTrace& trace,
+                                             const std::vector<std::string>& overrides) {
+  return platform::resolve_platform_text(trace.name() + ", platform of the recording",
+                                         trace.info().platform_yaml, overrides);
+}
+
+Replay replay(const traces::WorkTrace& trace, const RunRequest& request,
+              const ProgressCallback& progress) {
+  check_cores(trace, request);
+  const auto begin = std::chrono::steady_clock::now();
+  const sim::ChipConfig& chip = request.platform.config;
+  TraceSource source(trace, chip.cluster.l1.size, chip.l2.size, sim::has_accelerators(chip),
+                     sim::code_of(chip));
+  Replay result;
+  result.run = simulate_source(request, source, progress);
+  result.run.host_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.frames = source.comparisons();
+  result.recorded_l1 = recorded_platform(trace).config.cluster.l1.size;
+  return result;
+}
+
+}  // namespace leviosim::tools

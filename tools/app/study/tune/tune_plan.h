@@ -1,0 +1,94 @@
+// The options of `leviosim tune`: as typed, and what they ask for once checked.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/outputs/output_folder.h"
+#include "tools/app/html_report/page.h"
+#include "tools/app/run/run_options.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/runner.h"
+#include "tools/app/study/sequence.h"
+
+namespace CLI {
+class App;
+}
+
+namespace leviosim::tools {
+
+/// What a draw of the workload's random numbers does to an error is seen only over several.
+inline constexpr const char* kTunedSeeds = "1,2,3";
+
+/// What differs between runs of a point that ought to come to the same: the workload's random
+/// draws, or, where it draws nothing, other starts and causes that a user would not notice.
+struct Variation {
+  std::string name;  ///< "seed 2", "clock -2 %"
+  std::uint32_t seed = 1;
+  std::size_t later = 0;  ///< frames that are left out at the start
+  double clock = 1;       ///< factor of the point's
+  double gyro_bias = 0;   ///< of all samples [rad/s]
+};
+
+/// As typed.
+struct TuneWords {
+  TuneWords() { run.seed = kTunedSeeds; }
+
+  RunOptions run;  ///< with a list of seeds
+  std::string clocks;
+  std::string fps;
+  std::string deadline = "drop";
+  std::string miss_rate = "0.05";
+  std::string ate = "0.2";
+  bool perturbs = false;
+  RunnerWords runner;
+};
+
+/// What a clock comes with.
+struct ClockSetting {
+  Hertz clock;
+  std::optional<Volts> voltage;  ///< the lowest that allows it; none if the chip has no supply
+  std::vector<std::string> overrides;  ///< that set both, besides the user's
+};
+
+struct TunePlan {
+  RunOptions options;  ///< of every point; without what a point sets
+  RunRequest request;  ///< the same, checked
+  Sequence sequence;
+  double recorded_hz = 0;
+  std::vector<ClockSetting> clocks;   ///< rising
+  std::vector<double> fps;            ///< rising
+  std::vector<Variation> variations;  ///< of every point
+  bool perturbs = false;              ///< they are perturbations; else seeds
+  Deadline deadline = Deadline::Drop;
+  double miss_rate = 0;  ///< share of missed frames that is allowed
+  double ate_m = 0;      ///< error that is allowed
+  Measure measure;
+  RunnerOptions runner;
+  std::shared_ptr<outputs::OutputFolder> out;  ///< if results are to be written
+};
+
+void add_tune_options(CLI::App& command, TuneWords& words);
+
+/// @throws InputError naming the option
+TunePlan make_tune_plan(const CLI::App& command, const TuneWords& words);
+
+/// "100:370:10" or "120,240,370": clocks in MHz, both ends included, rising. @throws InputError
+std::vector<Hertz> parse_clocks(const std::string& text);
+
+/// "1,2,3", in this order. @throws InputError
+std::vector<std::uint32_t> parse_seed_list(const std::string& text);
+
+/// "10,15,20": rising. @throws InputError
+std::vector<double> parse_rates(const std::string& text);
+
+/// How the chip runs at a clock: the faster of its two clocks has it, the other one keeps its ratio
+/// to that, and the supply is as low as it can be.
+/// @param chip  what the user asked for
+/// @throws InputError for a clock that no voltage allows
+ClockSetting setting_for(const sim::ChipConfig& chip, const std::string& name, Hertz clock);
+
+}  // namespace leviosim::tools
