@@ -88,7 +88,6 @@ inline Words eval(const std::string& estimate, const Words& more = {}) {
 
 inline std::vector<Row> command_lines() {
   return {
-      {"NoCommand", {}, {"expected a command"}},
       {"UnknownCommand", {"rnu"}, {"rnu", "did you mean 'run'"}},
       {"UnknownOption", run({"--forse"}), {"--forse", "did you mean '--force'"}},
       {"EmptyOut", {"run", "--native", "--data", "@D", "--out=", "--quiet"}, {"--out"}},

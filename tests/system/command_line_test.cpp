@@ -2,12 +2,14 @@
 #include <elf.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 #include "sim/base/error.h"
@@ -113,8 +115,26 @@ TEST_F(CommandLine, RefusesPlatformsThatAreNotThere) {
                  {"controller.runs_on", "cluster.max_workers is 8 cores", "one core"});
 }
 
+/// One screen that says where to begin; every command stands on it.
+TEST_F(CommandLine, WelcomesWhoTypesItsName) {
+  const ProgramResult welcome = run_program(folder_.path(), {});
+  EXPECT_EQ(welcome.status, 0) << welcome.err;
+  EXPECT_EQ(welcome.err, "");
+  for (const char* part : {"leviosim demo", "leviosim whatif", "Guard the figures", "doctor"})
+    EXPECT_NE(welcome.out.find(part), std::string::npos) << part;
+  std::istringstream lines(welcome.out);
+  std::size_t count = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    const auto continued = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
+    EXPECT_LE(static_cast<std::ptrdiff_t>(line.size()) -
+                  std::count_if(line.begin(), line.end(), continued),
+              80)
+        << line;
+  }
+  EXPECT_LE(count, 24u);
+}
+
 TEST_F(CommandLine, SuggestsCommandsAndOptions) {
-  expect_refusal({}, {"expected a command: demo, run, replay, synth, flow"});
   expect_refusal({"rum"}, {"unknown command 'rum'; did you mean 'run'?"});
   expect_refusal({"run", "--plattform", "gap9"},
                  {"unknown option '--plattform'; did you mean '--platform'?"});

@@ -238,6 +238,15 @@ TEST_F(Compare, TheSummaryNamesTheCauses) {
   expect(compared({path("sixteen")}), {"divided among more cores -"}, "price of an operation");
 }
 
+/// The columns of a page say what differs, not twice the name of the run.
+TEST_F(Compare, NamesAPagesColumnsByTheChange) {
+  expect_done({"compare", path("run"), "-p", "cluster.fpu.dividers=2", "--quiet", "--report",
+               path("divided.html")});
+  const std::string page = base::read_text_file(path("divided.html"));
+  for (const char* name : {"\"name\":\"as recorded\"", "\"name\":\"cluster.fpu.dividers=2\""})
+    EXPECT_NE(page.find(name), std::string::npos) << name;
+}
+
 TEST_F(Compare, RefusesOtherInputsUnlessTheyAreMeant) {
   struct Row {
     const char* before;

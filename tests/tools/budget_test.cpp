@@ -344,9 +344,9 @@ TEST(BudgetShares, AreShownAsTheirLimitIs) {
                   .baseline = {},
                   .where = "",
                   .why = {}};
-  EXPECT_EQ(finding.excess(), "10.33 %, 195.14 % above 3.50 %");
+  EXPECT_EQ(finding.excess(), "10.33 %, 6.83 percentage points above 3.50 %");
   limit.bound.unit = "";
-  EXPECT_EQ(finding.excess(), "0.1033, 195.14 % above 0.0350");
+  EXPECT_EQ(finding.excess(), "0.1033, 6.83 percentage points above 0.0350");
 }
 
 TEST(Budget, HoldsVerdictsByTheirWords) {

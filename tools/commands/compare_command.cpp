@@ -92,6 +92,14 @@ std::vector<RunFolder> runs_of_programs(const CompareOptions& options, std::stri
   return list;
 }
 
+/// One run on two chips: columns of a page are named by the change, since the run has one name.
+void name_by_change(std::vector<RunFolder>& runs, const CompareOptions& options) {
+  constexpr std::size_t kComma = 2;
+  if (options.runs.size() != 1 || runs.size() != 2) return;
+  runs.front().record.name = "as recorded";
+  runs.back().record.name = on_chip(options).substr(kComma);
+}
+
 void run(const CLI::App& command, const CompareOptions& options) {
   require(
       command, "RUN",
@@ -123,9 +131,12 @@ void run(const CLI::App& command, const CompareOptions& options) {
         compare_runs(runs.front().record, runs[i].record,
                      check_comparable(runs.front().record, runs[i].record, allowed)));
   if (!note.empty()) comparisons.front().notes.push_back(note);
-  std::string html;
-  if (page) html = html_page(runs_report(runs, comparisons, nullptr));
   const std::string text = comparison_report(comparisons, format, options.all);
+  std::string html;
+  if (page) {
+    name_by_change(runs, options);
+    html = html_page(runs_report(runs, comparisons, nullptr));
+  }
   publish({{page, html, ""}}, format == ReportFormat::text ? Printout(text) : Printout(text, true));
 }
 

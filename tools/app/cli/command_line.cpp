@@ -14,6 +14,7 @@
 #include "sim/base/text.h"
 #include "tools/app/cli/completions.h"
 #include "tools/app/cli/screen.h"
+#include "tools/app/cli/welcome.h"
 
 namespace leviosim::tools {
 namespace {
@@ -132,6 +133,10 @@ void add_examples(CLI::App& command, const std::vector<std::string>& lines) {
 
 int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Words& typed) {
   refuse_empty_values(typed);
+  if (typed.empty()) {
+    print_piece(ScreenPiece::Kind::document, welcome(commands));
+    return 0;
+  }
   if (typed.size() == 3 && typed[0] == kHelp && typed[1] == "--as") {
     print_piece(ScreenPiece::Kind::document, manual(app, commands, typed[2]));
     return 0;

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "sim/chip/config.h"
-#include "tools/app/cli/screen.h"
 #include "tools/app/table/table.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 

@@ -9,8 +9,6 @@
 
 #include "sim/base/printable.h"
 #include "sim/base/text.h"
-#include "tools/app/budget/figures.h"
-#include "tools/app/cli/screen.h"
 #include "tools/app/record/statistics.h"
 #include "tools/app/report/accuracy_text.h"
 #include "tools/app/report/tables.h"

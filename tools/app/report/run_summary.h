@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "tools/app/cli/screen.h"
 #include "tools/app/result/run_result.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 

@@ -12,8 +12,6 @@
 #include "sim/base/printable.h"
 #include "sim/chip/accelerator.h"
 #include "sim/energy/area.h"
-#include "tools/app/budget/figures.h"
-#include "tools/app/cli/screen.h"
 #include "tools/app/report/energy_tables.h"
 #include "tools/app/report/run_summary.h"
 #include "tools/app/result/energy_summary.h"

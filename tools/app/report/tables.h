@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/app/cli/screen.h"
 #include "tools/app/result/run_result.h"
 #include "tools/app/table/table.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 

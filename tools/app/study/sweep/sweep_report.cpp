@@ -28,6 +28,7 @@
 #include "tools/app/study/sweep/points.h"
 #include "tools/app/study/sweep/sweep_check.h"
 #include "tools/app/study/sweep/sweep_folder.h"
+#include "tools/app/study/sweep/sweep_front.h"
 #include "tools/app/study/sweep/sweep_inputs.h"
 #include "tools/app/study/sweep/sweep_store.h"
 #include "tools/app/table/terminal_table.h"
@@ -35,55 +36,7 @@
 namespace leviosim::tools {
 namespace {
 
-constexpr std::size_t kMostRows = 40;
 constexpr std::size_t kMostFailures = 5;
-
-/// Objectives that some point has.
-std::vector<std::size_t> known_objectives(const std::vector<SweepOutcome>& outcomes) {
-  std::vector<std::size_t> known;
-  for (std::size_t k = 0; k < kObjectives.size(); ++k)
-    if (std::any_of(outcomes.begin(), outcomes.end(),
-                    [&](const SweepOutcome& o) { return o.objectives[k].has_value(); }))
-      known.push_back(k);
-  return known;
-}
-
-/// Titles, then a row for each of the first `most` points.
-std::vector<std::vector<std::string>> front_cells(SweepStore& store,
-                                                  const std::vector<SweepOutcome>& front,
-                                                  const std::vector<std::size_t>& objectives,
-                                                  std::size_t most) {
-  std::vector<std::vector<std::string>> rows(1);
-  rows[0].push_back("point");
-  for (const std::size_t k : objectives) rows[0].emplace_back(kObjectives[k].title);
-  rows[0].push_back("set");
-  for (std::size_t i = 0; i < std::min(front.size(), most); ++i) {
-    std::vector<std::string> cells{fmt::format("{}", front[i].point)};
-    for (const std::size_t k : objectives)
-      cells.push_back(front[i].objectives[k]
-                          ? fmt::format("{:.{}f}", *front[i].objectives[k] * kObjectives[k].scale,
-                                        kObjectives[k].decimals)
-                          : "-");
-    cells.push_back(store.settings_of(front[i].point));
-    rows.push_back(std::move(cells));
-  }
-  return rows;
-}
-
-std::string front_table(SweepStore& store, const std::vector<SweepOutcome>& front,
-                        const std::vector<std::size_t>& objectives) {
-  const auto rows = front_cells(store, front, objectives, kMostRows);
-  std::vector<Head> columns;
-  for (const std::string& title : rows[0]) columns.push_back({title});
-  columns.back().align = kLeft;
-  Table table(columns);
-  for (std::size_t i = 1; i < rows.size(); ++i)
-    table.add(std::vector<Cell>(rows[i].begin(), rows[i].end()));
-  std::string text = terminal_text(table);
-  if (front.size() > kMostRows)
-    text += fmt::format("  and {} more: rows of sweep.csv\n", front.size() - kMostRows);
-  return text;
-}
 
 std::string failures(SweepStore& store, const std::vector<SweepOutcome>& outcomes) {
   std::string text;
@@ -98,13 +51,7 @@ std::string failures(SweepStore& store, const std::vector<SweepOutcome>& outcome
   return count == 0 ? text : fmt::format("{} of the points cannot run:\n{}", count, text);
 }
 
-std::vector<std::vector<std::string>> sweep_front(SweepStore& store) {
-  const std::vector<SweepOutcome> front = pareto_front(store.outcomes());
-  if (front.empty()) return {};
-  return front_cells(store, front, known_objectives(front), front.size());
-}
-
-/// The same for a page: a box, and the front as a table of titles and rows.
+/// How many points are done, and which cannot run, as a box of a page.
 StudyBox sweep_box(SweepStore& store) {
   const std::vector<SweepOutcome> outcomes = store.outcomes();
   const std::int64_t planned = store.planned();
@@ -118,20 +65,12 @@ StudyBox sweep_box(SweepStore& store) {
     box.lines.push_back(
         fmt::format("point {} ({}): {}", o.point, store.settings_of(o.point), o.failure));
   }
-  box.sentence = fmt::format("{} of them cannot run. Points on the Pareto front: {}.",
-                             box.lines.size(), pareto_front(outcomes).size());
+  box.sentence = sweep_conclusion(store);
   if (box.lines.size() > kMostFailures) {
     box.lines.resize(kMostFailures);
     box.lines.push_back("and more: column failure of the points");
   }
   return box;
-}
-
-/// In a sentence: whether points cannot run, else how many no other beats.
-std::string sweep_conclusion(SweepStore& store) {
-  const StudyBox box = sweep_box(store);
-  if (box.lines.empty()) return fmt::format("in short: {}; {}", box.mark, box.sentence);
-  return fmt::format("verdict: {}; {}", box.lines.front(), box.sentence);
 }
 
 /// Command lines that say more about a sweep in that folder: what differs between its first point
@@ -146,19 +85,12 @@ std::vector<std::string> after_sweep(SweepStore& store, const std::string& folde
 /// How many points are done, which failed and which are open, and the Pareto front.
 std::string sweep_report(SweepStore& store) {
   const std::vector<SweepOutcome> outcomes = store.outcomes();
-  const std::vector<SweepOutcome> front = pareto_front(outcomes);
   const std::int64_t planned = store.planned();
   const auto open = planned - static_cast<std::int64_t>(outcomes.size());
   std::string text = fmt::format("{} of {} points are done", outcomes.size(), planned);
   text += open > 0 ? fmt::format(", {} are open\n", open) : std::string("\n");
   text += failures(store, outcomes);
-  if (front.empty()) return text;
-  const std::vector<std::size_t> known = known_objectives(front);
-  text +=
-      fmt::format("\nPareto front, {} of them: no other point is better in one of\n", front.size());
-  for (std::size_t i = 0; i < known.size(); ++i)
-    text += fmt::format("{}{}", i == 0 ? "" : ", ", kObjectives[known[i]].title);
-  return text + " and as good in the others\n" + front_table(store, front, known);
+  return text + front_text(store);
 }
 
 /// "platform.cluster.clock" → "cluster.clock".
@@ -318,7 +250,8 @@ Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, Swe
 }
 
 Printout with_conclusion(std::string report, SweepStore& store, const std::string& folder) {
-  return Printout(std::move(report)).ending(sweep_conclusion(store), after_sweep(store, folder));
+  return Printout(std::move(report))
+      .ending("in short: " + sweep_conclusion(store), after_sweep(store, folder));
 }
 
 void merge(const SweepWords& words) {

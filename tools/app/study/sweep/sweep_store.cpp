@@ -301,11 +301,15 @@ std::vector<SweepOutcome> SweepStore::outcomes() const {
   return all;
 }
 
+const SweepStore::Settings& SweepStore::settings(int point) const {
+  static const Settings kNone;
+  const auto kept = points_.find(point);
+  return kept == points_.end() ? kNone : kept->second.settings;
+}
+
 std::string SweepStore::settings_of(int point) const {
   std::string text;
-  const auto kept = points_.find(point);
-  if (kept == points_.end()) return text;
-  for (const auto& [name, value] : kept->second.settings)
+  for (const auto& [name, value] : settings(point))
     text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, value);
   return text;
 }

@@ -70,6 +70,9 @@ class SweepStore {
   std::vector<SweepOutcome> outcomes() const;
   /// That the points set, in the order of the plan.
   const std::vector<std::string>& parameter_names() const { return about_.parameters; }
+  using Settings = std::vector<std::pair<std::string, std::string>>;
+  /// Names and values of a finished point; empty of one that is not.
+  const Settings& settings(int point) const;
   /// "platform.cluster.clock=240MHz" of a finished point.
   std::string settings_of(int point) const;
   std::int64_t planned() const { return about_.points; }
@@ -105,7 +108,7 @@ class SweepStore {
   /// A finished point. Names of figures are kept once for all points.
   struct Kept {
     std::string line;  ///< with its end
-    std::vector<std::pair<std::string, std::string>> settings;
+    Settings settings;
     std::string failure;
     std::vector<std::pair<std::size_t, double>> figures;  ///< place in figure_names_, value
   };
