@@ -38,14 +38,7 @@ Arena::Arena(const Arena& lender, std::string_view name, Bytes offset, Bytes cap
 Bytes Arena::place(std::string_view name, Bytes size) {
   const Bytes offset(round_up((base_ + used_).count(), alignment_));
   const Bytes end = offset - base_ + size;
-  if (end > capacity_) {
-    throw MemoryOverflow(
-        fmt::format("{}: block '{}' of {} bytes does not fit in {}: {} of {} bytes are in use, {} "
-                    "bytes are missing",
-                    user_.empty() ? "set-up" : user_, name, size.count(), name_, used_.count(),
-                    capacity_.count(), (end - capacity_).count()),
-        std::string(name_));
-  }
+  if (end > capacity_) throw overflow(name, size);
   live_.push_back({name, offset, size});
   used_ = end;
   if (used_ > peak_) {
@@ -53,6 +46,16 @@ Bytes Arena::place(std::string_view name, Bytes size) {
     at_peak_ = live_;
   }
   return offset;
+}
+
+MemoryOverflow Arena::overflow(std::string_view block, Bytes size) const {
+  const Bytes begin(round_up((base_ + used_).count(), alignment_));
+  return MemoryOverflow(
+      fmt::format("{}: block '{}' of {} bytes does not fit in {}: {} of {} bytes are in use, {} "
+                  "bytes are missing",
+                  user_.empty() ? "set-up" : user_, block, size.count(), name_, used_.count(),
+                  capacity_.count(), (begin - base_ + size - capacity_).count()),
+      std::string(name_));
 }
 
 std::byte* Arena::host(Bytes size) {

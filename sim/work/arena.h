@@ -21,6 +21,8 @@
 
 namespace leviosim::work {
 
+class MemoryOverflow;
+
 class Arena {
  public:
   /// @param name       as shown to the user, e.g. "L1"
@@ -76,6 +78,9 @@ class Arena {
   void set_user(std::string_view stage) { user_ = stage; }
 
   const std::vector<Block>& live() const { return live_; }
+
+  /// What is thrown where a block of this size does not fit into the free space.
+  MemoryOverflow overflow(std::string_view block, Bytes size) const;
 
   /// Part `k` of `n` equal parts of the free space, as an arena of its own (the scratch of one core
   /// inside a fork). It borrows this arena's memory, which must not be allocated from meanwhile.

@@ -25,6 +25,7 @@ Segment Machine::counted_so_far() {
 void Machine::begin_stage(std::string_view name) {
   check(!in_stage_, "stages do not nest");
   in_stage_ = true;
+  stage_ = name;
   local_.set_user(name);
   local_.reset_peak();
   fork_peak_ = {};
@@ -76,6 +77,25 @@ void Machine::end_fork() {
       fork_peak_.blocks.push_back({"scratch of the cores", local_.used(), scratch_sum_});
   }
   job_.stages.back().steps.emplace_back(std::move(fork_));
+}
+
+int Machine::workers_with(Bytes scratch) const {
+  if (scratch == Bytes(0)) return config_.cores;
+  // What is lent begins at an aligned place.
+  const Bytes each = scratch + Bytes(config_.alignment - 1);
+  if (scratch > local_.free()) throw local_.overflow("scratch of a core", scratch);
+  return static_cast<int>(
+      std::clamp<std::int64_t>(local_.free().count() / each.count(), 1, config_.cores));
+}
+
+void Machine::note_tile(std::string_view block, Bytes bytes) {
+  const auto known = std::find_if(passages_.begin(), passages_.end(), [&](const Passage& p) {
+    return p.stage == stage_ && p.block == block;
+  });
+  Passage& passage =
+      known != passages_.end() ? *known : passages_.emplace_back(Passage{stage_, block});
+  ++passage.tiles;
+  passage.bytes += bytes;
 }
 
 void Machine::note_transfer(const Transfer& transfer) {

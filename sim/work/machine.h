@@ -83,21 +83,24 @@ class Machine {
   };
   [[nodiscard]] Stage stage(std::string_view name) { return Stage(*this, name); }
 
-  /// Runs body(core) for every worker; the master waits for all of them.
+  /// Runs body(core) for every worker; the master waits for all of them. Where the free memory has
+  /// no room for the scratch of all, as many as have it share the work, and the others wait.
+  /// @param scratch  that each worker takes
+  /// @throws MemoryOverflow if there is no room for the scratch of one
   template <class Body>
-  void fork(std::string_view name, Body&& body) {
+  void fork(std::string_view name, Body&& body, Bytes scratch = Bytes(0)) {
     begin_fork(name);
-    run_shares(config_.cores, body);
+    run_shares(workers_with(scratch), body);
     end_fork();
   }
 
   /// The same; the program of one core has another order of allocations, in which no word
   /// straddles.
   template <class Body>
-  void fork_aligned_on_one_core(std::string_view name, Body&& body) {
+  void fork_aligned_on_one_core(std::string_view name, Body&& body, Bytes scratch = Bytes(0)) {
     begin_fork(name);
     fork_.aligned_on_one_core = true;
-    run_shares(config_.cores, body);
+    run_shares(workers_with(scratch), body);
     end_fork();
   }
 
@@ -152,6 +155,11 @@ class Machine {
   /// What was recorded since the last call.
   Job take_job();
 
+  /// Counts a tile of a block that passes through the local memory (tiles.h).
+  void note_tile(std::string_view block, Bytes bytes);
+  /// What has passed so far, in the order of its first tiles.
+  const std::vector<Passage>& passages() const { return passages_; }
+
   /// Keys of the pieces of code that were executed and whose size is not known, which therefore
   /// cost no fetches (code_tracker.h). Empty if no code was followed.
   std::set<std::uint64_t> code_without_size() const {
@@ -180,7 +188,13 @@ class Machine {
       body(core);
       end_share(scratch.peak());
     }
+    for (int id = cores; id < config_.cores; ++id) {
+      follow_code_of(id);
+      end_share(Bytes(0));
+    }
   }
+  /// For how many workers the free memory has this much scratch.
+  int workers_with(Bytes scratch) const;
   void end_share(Bytes scratch_peak);
   void end_fork();
   void note_transfer(const Transfer& transfer);
@@ -199,7 +213,9 @@ class Machine {
   Fork fork_;
   Bytes scratch_sum_{0};
   Bytes scratch_max_{0};
-  MemoryPeak fork_peak_;                ///< of the forks of the stage so far
+  MemoryPeak fork_peak_;  ///< of the forks of the stage so far
+  std::string_view stage_;
+  std::vector<Passage> passages_;
   std::optional<CodeTracker> tracker_;  ///< of every core and of the master, if their code is known
 };
 

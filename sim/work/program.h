@@ -64,6 +64,13 @@ struct Block {
   Bytes size;
 };
 
+/// A block that passed through the local memory in tiles, in all calls of a stage.
+struct Passage {
+  std::string_view stage, block;
+  std::int64_t tiles = 0;
+  Bytes bytes{0};
+};
+
 /// Highest occupation of a memory during a stage.
 struct MemoryPeak {
   Bytes parallel;             ///< with the scratch of all cores alive at once

@@ -40,5 +40,31 @@ TEST(Machine, TheForkThatTakesMostInAllDecides) {
   EXPECT_EQ(peak_of_forks({{80, 80}, {100, 0}}).parallel, Bytes(160));
 }
 
+/// Items that each of the four cores worked on.
+std::vector<int> items_by_core(Bytes scratch, int items) {
+  Machine machine({.cores = 4, .capacity = Bytes(1000), .record = true});
+  std::vector<int> of_core(4, 0);
+  {
+    const auto stage = machine.stage("s");
+    machine.fork(
+        "f",
+        [&](Core& core) {
+          core.scratch.alloc<Bytewise>("scratch", static_cast<int>(scratch.count()));
+          const auto [begin, end] = core.share(items);
+          of_core[static_cast<std::size_t>(core.id)] = end - begin;
+        },
+        scratch);
+  }
+  EXPECT_EQ(std::get<Fork>(machine.take_job().stages.at(0).steps.at(0)).shares.size(), 4u);
+  return of_core;
+}
+
+TEST(Machine, AsManyCoresWorkAsHaveScratch) {
+  EXPECT_EQ(items_by_core(Bytes(240), 12), (std::vector<int>{3, 3, 3, 3}));
+  EXPECT_EQ(items_by_core(Bytes(300), 12), (std::vector<int>{4, 4, 4, 0}));
+  EXPECT_EQ(items_by_core(Bytes(900), 12), (std::vector<int>{12, 0, 0, 0}));
+  EXPECT_THROW(items_by_core(Bytes(1001), 12), MemoryOverflow);
+}
+
 }  // namespace
 }  // namespace leviosim::work

@@ -118,10 +118,11 @@ inline Rig rig_of(const traces::CameraModel& camera) {
 }
 
 /// 20 frames/s, with the ten IMU samples before each.
-inline ShortFlight draw_flight(const traces::Motion& motion, double seconds) {
+inline ShortFlight draw_flight(const traces::Motion& motion, double seconds, int width = 160,
+                               int height = 120) {
   using traces::CameraModel;
   const CameraModel camera =
-      traces::ImagePreparation(traces::euroc_cam0(), {160, 120}).prepared_camera();
+      traces::ImagePreparation(traces::euroc_cam0(), {width, height}).prepared_camera();
   const traces::World room = traces::make_room(5, 0.016, 0);
   const traces::Renderer renderer(room, camera, {.noise = 1.2, .seed = 7});
   traces::ImuSynthesizer imu(traces::euroc_imu0(), 11);
@@ -252,6 +253,7 @@ struct Flown {
   double ate = 0;      ///< SE3-aligned [m]
   bool finite = true;  ///< all poses
   int map_restarts = 0;
+  std::vector<work::Passage> passages;  ///< what passed through L1 in tiles
   double skew = 0;  ///< how far a rotation is from being one: largest element of RᵀR − I
 
   int count(PoseSource source) const {
@@ -272,8 +274,9 @@ inline Eigen::Isometry3d body_pose(const CameraPose& pose, const Eigen::Isometry
   return T * T_body_camera.inverse();
 }
 
-inline Flown fly(const ShortFlight& flight, const Profile& profile) {
-  work::Machine cluster({8, "L1", Bytes(1 << 24), 1, false});
+inline Flown fly(const ShortFlight& flight, const Profile& profile, int cores = 8,
+                 Bytes l1 = Bytes(1 << 24)) {
+  work::Machine cluster({cores, "L1", l1, 1, false});
   work::Machine controller({1, "L2", Bytes(1 << 24), 4, false});
   const auto odometry = make_odometry(false, profile, flight.rig, cluster, controller);
   Flown flown;
@@ -304,6 +307,7 @@ inline Flown fly(const ShortFlight& flight, const Profile& profile) {
     flown.health.push_back(static_cast<Health>(report.health));
     flown.map_restarts += report.map_restarts;
   }
+  flown.passages = cluster.passages();
   if (flown.finite) flown.ate = traces::evaluate(flown.trajectory, flight.truth).translation.rmse;
   return flown;
 }

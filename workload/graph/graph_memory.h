@@ -29,11 +29,22 @@ inline constexpr int kUnusedAge = 255;  ///< of a slot that never held a landmar
 struct LocalMemory {
   template <class P, class T>
   using Span = typename P::template Span<T>;
+  template <class P, class T>
+  using LongSpan = Span<P, T>;
 };
 /// L2 as a cluster core reaches it.
 struct L2FromCluster {
   template <class P, class T>
   using Span = typename P::template L2Span<T>;
+  template <class P, class T>
+  using LongSpan = Span<P, T>;
+};
+/// Local memory that has no room for the long blocks: a cluster core reaches those in L2.
+struct LongBlocksInL2 {
+  template <class P, class T>
+  using Span = typename P::template Span<T>;
+  template <class P, class T>
+  using LongSpan = typename P::template L2Span<T>;
 };
 
 /// Name and size of a block: `each` elements for every one of what `of` counts, or `each` in all.
@@ -41,6 +52,7 @@ struct GraphBlock {
   std::string_view name;
   int each;
   int GraphCapacity::*of;
+  bool is_long;  ///< and hardly touched by a keyframe that comes, but for the observations
   bool inertial = false;
 
   int elements(const GraphCapacity& capacity) const {
@@ -51,28 +63,30 @@ struct GraphBlock {
 /// In the order of GraphMemory::blocks(): words, then half-words, then bytes, so that nothing
 /// straddles in a packed memory.
 inline constexpr std::array kGraphBlocks = {
-    GraphBlock{"landmark points", 3, &GraphCapacity::landmarks},
-    GraphBlock{"landmark descriptors", kGraphDescriptorWords, &GraphCapacity::landmarks},
-    GraphBlock{"keyframe poses", kPoseFloats, &GraphCapacity::keyframes},
-    GraphBlock{"keyframe velocities", 3, &GraphCapacity::keyframes},
+    GraphBlock{"landmark points", 3, &GraphCapacity::landmarks, true},
+    GraphBlock{"landmark descriptors", kGraphDescriptorWords, &GraphCapacity::landmarks, true},
+    GraphBlock{"keyframe poses", kPoseFloats, &GraphCapacity::keyframes, false},
+    GraphBlock{"keyframe velocities", 3, &GraphCapacity::keyframes, false},
     GraphBlock{"IMU intervals", Preintegration<work::Native>::kFloats, &GraphCapacity::keyframes,
-               true},
-    GraphBlock{"keyframe numbers", 1, &GraphCapacity::keyframes},
-    GraphBlock{"biases and gravity", 17, nullptr},
-    GraphBlock{"graph header", kGraphHeaderWords, nullptr},
-    GraphBlock{"observed landmarks", 1, &GraphCapacity::observations},
-    GraphBlock{"observed u", 1, &GraphCapacity::observations},
-    GraphBlock{"observed v", 1, &GraphCapacity::observations},
-    GraphBlock{"observing keyframes", 1, &GraphCapacity::observations},
-    GraphBlock{"observed generations", 1, &GraphCapacity::observations},
-    GraphBlock{"landmark ages", 1, &GraphCapacity::landmarks},
-    GraphBlock{"landmark generations", 1, &GraphCapacity::landmarks},
+               true, true},
+    GraphBlock{"keyframe numbers", 1, &GraphCapacity::keyframes, false},
+    GraphBlock{"biases and gravity", 17, nullptr, false},
+    GraphBlock{"graph header", kGraphHeaderWords, nullptr, false},
+    GraphBlock{"observed landmarks", 1, &GraphCapacity::observations, true},
+    GraphBlock{"observed u", 1, &GraphCapacity::observations, true},
+    GraphBlock{"observed v", 1, &GraphCapacity::observations, true},
+    GraphBlock{"observing keyframes", 1, &GraphCapacity::observations, true},
+    GraphBlock{"observed generations", 1, &GraphCapacity::observations, true},
+    GraphBlock{"landmark ages", 1, &GraphCapacity::landmarks, false},
+    GraphBlock{"landmark generations", 1, &GraphCapacity::landmarks, false},
 };
 
 template <class P, class Where>
 struct GraphMemory {
   template <class T>
   using Span = typename Where::template Span<P, T>;
+  template <class T>
+  using LongSpan = typename Where::template LongSpan<P, T>;
   using F = typename P::F32;
   using I32 = typename P::I32;
   using U16 = typename P::U16;
@@ -81,9 +95,9 @@ struct GraphMemory {
   GraphMemory() = default;
   /// Views of new, uninitialised memory in `arena`.
   GraphMemory(work::Arena& arena, const GraphCapacity& size) : GraphMemory(arena, arena, size) {}
-  /// Memory of a graph with the intervals in `inertial`, beside the one that is under way. The paper's graph
-  /// of 64.2 kB has no room for them: to the byte it is 1000 landmarks of 45 bytes and 2400
-  /// observations of 8.
+  /// Memory of a graph with the intervals in `inertial`, beside the one that is under way. The
+  /// paper's graph of 64.2 kB has no room for them: to the byte it is 1000 landmarks of 45 bytes
+  /// and 2400 observations of 8.
   GraphMemory(work::Arena& arena, work::Arena& inertial, const GraphCapacity& size)
       : capacity(size) {
     check(size.keyframes <= 255 && size.landmarks <= 65536 && size.observations <= 65535,
@@ -107,26 +121,26 @@ struct GraphMemory {
   }
 
   /// Floats of the interval before keyframe `slot`.
-  Span<F> interval_record(I32 slot) const {
+  LongSpan<F> interval_record(I32 slot) const {
     const I32 at = slot * I32(Preintegration<P>::kFloats);
     return keyframe_intervals.subspan(at, Preintegration<P>::kFloats);
   }
 
   GraphCapacity capacity;
-  Span<F> points;                          ///< x, y, z per landmark, world frame, m
-  Span<typename P::U32> descriptors;       ///< 8 words per landmark
-  Span<F> keyframe_poses;                  ///< T_world_camera, kPoseFloats each
-  Span<F> keyframe_velocities;             ///< world frame, m/s
-  Span<F> keyframe_intervals;              ///< motion since the keyframe before
-  Span<I32> keyframe_ids;                  ///< serial number; -1 for an empty slot
-  Span<F> environment;                     ///< biases, gravity, prior of the biases
-  Span<I32> header;                        ///< counters, see PoseGraph
-  Span<U16> observation_landmarks;         ///< slot
-  Span<U16> observation_u, observation_v;  ///< pixel, in the unit of the camera's intrinsics
-  Span<Byte> observation_keyframes;        ///< slot
-  Span<Byte> observation_generations;      ///< of the landmark that was meant
-  Span<Byte> ages;                         ///< keyframes since last seen, or kUnusedAge
-  Span<Byte> generations;                  ///< of each slot, modulo 256
+  LongSpan<F> points;                          ///< x, y, z per landmark, world frame, m
+  LongSpan<typename P::U32> descriptors;       ///< 8 words per landmark
+  Span<F> keyframe_poses;                      ///< T_world_camera, kPoseFloats each
+  Span<F> keyframe_velocities;                 ///< world frame, m/s
+  LongSpan<F> keyframe_intervals;              ///< motion since the keyframe before
+  Span<I32> keyframe_ids;                      ///< serial number; -1 for an empty slot
+  Span<F> environment;                         ///< biases, gravity, prior of the biases
+  Span<I32> header;                            ///< counters, see PoseGraph
+  LongSpan<U16> observation_landmarks;         ///< slot
+  LongSpan<U16> observation_u, observation_v;  ///< pixel, in the unit of the camera's intrinsics
+  LongSpan<Byte> observation_keyframes;        ///< slot
+  LongSpan<Byte> observation_generations;      ///< of the landmark that was meant
+  Span<Byte> ages;                             ///< keyframes since last seen, or kUnusedAge
+  Span<Byte> generations;                      ///< of each slot, modulo 256
 };
 
 /// Calls visit(block of a, block of b) for all blocks of two graphs of one capacity.
@@ -157,6 +171,42 @@ GraphMemory<P, L2FromCluster> seen_from_cluster(const GraphMemory<P, LocalMemory
   return seen;
 }
 
+/// What a graph takes in a memory whose blocks begin at words.
+template <class P>
+Bytes graph_size(const GraphCapacity& capacity) {
+  std::int64_t size = 0;
+  const GraphBlock* block = kGraphBlocks.data();
+  const auto add = [&](auto& span) {
+    const auto element = static_cast<std::int64_t>(sizeof(*span.data()));
+    size += (element * (block++)->elements(capacity) + 3) / 4 * 4;
+  };
+  GraphMemory<P, LocalMemory> graph;
+  std::apply([&](auto&... spans) { (add(spans), ...); }, graph.blocks());
+  return Bytes(size);
+}
+
+/// The graph with new memory in `arena` for its short blocks, and the long ones where they are.
+template <class P>
+GraphMemory<P, LongBlocksInL2> alloc_short_blocks(work::Arena& arena,
+                                                  const GraphMemory<P, LocalMemory>& in_l2) {
+  GraphMemory<P, LongBlocksInL2> graph;
+  graph.capacity = in_l2.capacity;
+  const GraphBlock* block = kGraphBlocks.data();
+  const auto place = [&](auto& to, auto& from) {
+    using Span = std::remove_reference_t<decltype(to)>;
+    to = block->is_long ? Span(from.data(), from.size())
+                        : arena.alloc<Span>(block->name, from.size());
+    ++block;
+  };
+  GraphMemory<P, LocalMemory> source = in_l2;
+  std::apply(
+      [&](auto&... to) {
+        std::apply([&](auto&... from) { (place(to, from), ...); }, source.blocks());
+      },
+      graph.blocks());
+  return graph;
+}
+
 /// DMA of the whole graph from L2 into a copy in local memory.
 template <class P>
 void copy_graph_in(work::Machine& machine, const GraphMemory<P, LocalMemory>& local,
@@ -168,6 +218,24 @@ template <class P>
 void copy_graph_out(work::Machine& machine, const GraphMemory<P, LocalMemory>& in_l2,
                     const GraphMemory<P, LocalMemory>& local) {
   for_each_block_pair(in_l2, local, [&](auto& to, auto& from) { machine.copy_out(to, from); });
+}
+
+/// The same of the short blocks only.
+template <class P>
+void copy_short_blocks_in(work::Machine& machine, const GraphMemory<P, LongBlocksInL2>& graph,
+                          const GraphMemory<P, LocalMemory>& in_l2) {
+  const GraphBlock* block = kGraphBlocks.data();
+  for_each_block_pair(graph, in_l2, [&](auto& to, auto& from) {
+    if (!(block++)->is_long) machine.copy_in(to, from);
+  });
+}
+template <class P>
+void copy_short_blocks_out(work::Machine& machine, const GraphMemory<P, LocalMemory>& in_l2,
+                           const GraphMemory<P, LongBlocksInL2>& graph) {
+  const GraphBlock* block = kGraphBlocks.data();
+  for_each_block_pair(in_l2, graph, [&](auto& to, auto& from) {
+    if (!(block++)->is_long) machine.copy_out(to, from);
+  });
 }
 
 }  // namespace leviosim::vio

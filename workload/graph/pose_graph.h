@@ -26,7 +26,8 @@ namespace leviosim::vio {
 
 /// The graph, a bundle of views: copies share the memory.
 /// @tparam Where  LocalMemory for the fabric controller and for copies in L1, L2FromCluster for a
-///                cluster core that works on L2 directly
+///                cluster core that works on L2 directly, LongBlocksInL2 for one that has a copy of
+///                the short blocks
 template <class P, class Where = LocalMemory>
 class PoseGraph : public GraphMemory<P, Where> {
  public:
@@ -57,9 +58,31 @@ class PoseGraph : public GraphMemory<P, Where> {
   /// Adds a keyframe; if all slots are taken the oldest leaves, with its observations.
   /// @param interval  record of the motion since the keyframe before (Preintegration::kFloats);
   ///                  copied. Of no length if there is none.
+  /// @param remove    takes the observations of a keyframe off the list
   /// @return its slot
+  template <class Record, class Remove>
+  I32 add_keyframe(const KeyframeState<P>& state, const Record& interval,
+                   const Remove& remove) const;
   template <class Record>
-  I32 add_keyframe(const KeyframeState<P>& state, const Record& interval) const;
+  I32 add_keyframe(const KeyframeState<P>& state, const Record& interval) const {
+    return add_keyframe(state, interval, [this](I32 keyframe) { remove_observations(keyframe); });
+  }
+
+  /// Columns of observations, a part of the list.
+  template <class Numbers, class Bytes>
+  struct Observations {
+    Numbers landmarks, u, v;
+    Bytes keyframes, generations;
+  };
+  /// Copies the first `n` observations but for those of the keyframe, and of landmarks whose slot
+  /// was reused. `to` may be `from`.
+  /// @return how many are left
+  template <class From, class To>
+  I32 keep_observations(I32 keyframe, int n, const From& from, const To& to) const;
+  void set_observation_count(I32 n) const { this->header[kObservations] = n; }
+
+  /// Takes the observations of a keyframe off the list.
+  void remove_observations(I32 keyframe) const;
 
   /// Makes all landmarks one keyframe older and starts the search for slots to reuse anew. Once per
   /// keyframe, before its observations and landmarks are added.
@@ -156,8 +179,8 @@ class PoseGraph : public GraphMemory<P, Where> {
     return all.subspan(I32(i * I32(floats)), floats);
   }
 
-  void drop_oldest_keyframe() const;
-  void remove_observations(I32 keyframe) const;
+  template <class Remove>
+  void drop_oldest_keyframe(const Remove& remove) const;
   I32 find_reusable_slot() const;
   I32 oldest_age_below(I32 age) const;
 };
@@ -177,11 +200,12 @@ void PoseGraph<P, Where>::clear(const ImuBias<P>& bias, const Vec3<P>& gravity) 
 }
 
 template <class P, class Where>
-template <class Record>
+template <class Record, class Remove>
 typename P::I32 PoseGraph<P, Where>::add_keyframe(const KeyframeState<P>& state,
-                                                  const Record& interval) const {
+                                                  const Record& interval,
+                                                  const Remove& remove) const {
   const typename P::Function function("PoseGraph::add_keyframe");
-  if (keyframe_count() == I32(this->capacity.keyframes)) drop_oldest_keyframe();
+  if (keyframe_count() == I32(this->capacity.keyframes)) drop_oldest_keyframe(remove);
   this->header[kKeyframes] += I32(1);
   const I32 slot = newest_keyframe();
   set_keyframe(slot, state);
@@ -194,34 +218,46 @@ typename P::I32 PoseGraph<P, Where>::add_keyframe(const KeyframeState<P>& state,
 }
 
 template <class P, class Where>
-void PoseGraph<P, Where>::drop_oldest_keyframe() const {
+template <class Remove>
+void PoseGraph<P, Where>::drop_oldest_keyframe(const Remove& remove) const {
   const I32 oldest = this->header[kOldest];
-  remove_observations(oldest);
+  remove(oldest);
   this->keyframe_ids[oldest] = I32(-1);
   this->header[kOldest] = keyframe_slot(1);
   this->header[kKeyframes] -= I32(1);
 }
 
 template <class P, class Where>
+template <class From, class To>
+typename P::I32 PoseGraph<P, Where>::keep_observations(I32 keyframe, int n, const From& from,
+                                                       const To& to) const {
+  const auto now = this->generations;
+  I32 kept = 0;
+  for (int i : P::range(0, n)) {
+    const I32 seen_by = from.keyframes[i];
+    if (seen_by == keyframe) continue;
+    const I32 landmark = from.landmarks[i];
+    const I32 generation = from.generations[i];
+    if (generation != I32(now[landmark])) continue;
+    const I32 u = from.u[i], v = from.v[i];
+    to.keyframes[kept] = work::narrow<Byte>(seen_by);
+    to.generations[kept] = work::narrow<Byte>(generation);
+    to.landmarks[kept] = work::narrow<U16>(landmark);
+    to.u[kept] = work::narrow<U16>(u);
+    to.v[kept] = work::narrow<U16>(v);
+    ++kept;
+  }
+  return kept;
+}
+
+template <class P, class Where>
 void PoseGraph<P, Where>::remove_observations(I32 keyframe) const {
   const typename P::Function function("PoseGraph::remove_observations");
   const Memory g = *this;
-  I32 kept = 0;
-  for (int i : P::range(0, work::value(observation_count()))) {
-    const I32 seen_by = g.observation_keyframes[i];
-    if (seen_by == keyframe) continue;
-    const I32 landmark = g.observation_landmarks[i];
-    const I32 generation = g.observation_generations[i];
-    if (generation != I32(g.generations[landmark])) continue;
-    const I32 u = g.observation_u[i], v = g.observation_v[i];
-    g.observation_keyframes[kept] = work::narrow<Byte>(seen_by);
-    g.observation_generations[kept] = work::narrow<Byte>(generation);
-    g.observation_landmarks[kept] = work::narrow<U16>(landmark);
-    g.observation_u[kept] = work::narrow<U16>(u);
-    g.observation_v[kept] = work::narrow<U16>(v);
-    ++kept;
-  }
-  this->header[kObservations] = kept;
+  const Observations<decltype(g.observation_u), decltype(g.observation_keyframes)> all{
+      g.observation_landmarks, g.observation_u, g.observation_v, g.observation_keyframes,
+      g.observation_generations};
+  set_observation_count(keep_observations(keyframe, work::value(observation_count()), all, all));
 }
 
 template <class P, class Where>

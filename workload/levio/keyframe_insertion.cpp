@@ -3,20 +3,23 @@
 #include "workload/levio/geometry/pose_matrix.h"
 #include "workload/levio/geometry/two_view_point.h"
 #include "workload/levio/vision/levio_matcher.h"
+#include "workload/vio/graph_at_hand.h"
 #include "workload/vio/keyframes.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio::levio {
 namespace {
 
-/// What an insertion works with: the graph in L1, the camera, and where both keyframes are.
-template <class P>
+/// What an insertion works with: the graph, the frame's descriptors, the camera, and where both
+/// keyframes are.
+template <class P, class Graph, class Words>
 struct Insertion {
   using I32 = typename P::I32;
 
   const FrontEndState<P>& state;
   const Frame<P>& frame;
-  const PoseGraph<P>& graph;
+  const Graph& graph;
+  const Words& descriptors;
   CameraConstants<P> camera;
   MatrixView<P> T_before, T_now;  ///< 4×4, from the world
   I32 slot_before, slot_now;
@@ -35,8 +38,8 @@ struct Insertion {
 };
 
 /// Features whose match in the last keyframe shows a landmark show it, too.
-template <class P>
-void inherit_landmarks(const Insertion<P>& in) {
+template <class P, class Graph, class Words>
+void inherit_landmarks(const Insertion<P, Graph, Words>& in) {
   using I32 = typename P::I32;
   const typename P::Function function("levio_inherit_landmarks");
   const MatchList<P>& matches = in.frame.matches.list;
@@ -50,8 +53,8 @@ void inherit_landmarks(const Insertion<P>& in) {
 }
 
 /// Landmarks that the features show and that agree with them.
-template <class P>
-void register_observations(const Insertion<P>& in) {
+template <class P, class Graph, class Words>
+void register_observations(const Insertion<P, Graph, Words>& in) {
   using I32 = typename P::I32;
   const typename P::Function function("levio_register_observations");
   const FeatureList<P>& features = in.frame.features.list;
@@ -66,14 +69,14 @@ void register_observations(const Insertion<P>& in) {
       continue;
     }
     if (in.graph.add_observation(in.slot_now, landmark, u, v))
-      in.graph.update_descriptor(
-          landmark, features.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
+      in.graph.update_descriptor(landmark,
+                                 in.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
   }
 }
 
 /// Matches that show no landmark yet become one, if both views agree on it.
-template <class P>
-void triangulate_landmarks(const Insertion<P>& in) {
+template <class P, class Graph, class Words>
+void triangulate_landmarks(const Insertion<P, Graph, Words>& in) {
   using I32 = typename P::I32;
   const typename P::Function function("levio_triangulate_landmarks");
   const Frame<P>& frame = in.frame;
@@ -92,8 +95,8 @@ void triangulate_landmarks(const Insertion<P>& in) {
         triangulate<P>(in.T_before, in.T_now, before, now, in.camera, in.state.machine.local());
     if (!in.agrees(in.T_before, point, before, limit) || !in.agrees(in.T_now, point, now, limit))
       continue;
-    const auto words = frame.features.list.descriptors.subspan(I32(feature * I32(kDescriptorWords)),
-                                                               kDescriptorWords);
+    const auto words =
+        in.descriptors.subspan(I32(feature * I32(kDescriptorWords)), kDescriptorWords);
     const I32 landmark = in.graph.add_landmark(point, words);
     if (landmark < I32(0)) return;
     in.graph.add_observation(in.slot_before, landmark, old_u, old_v);
@@ -110,7 +113,10 @@ void store_whole_keyframe(FrontEndState<P>& state, const Frame<P>& frame) {
   const ObservedFeatures<P>& from = frame.features;
   machine.copy_out(to.list.x, from.list.x);
   machine.copy_out(to.list.y, from.list.y);
-  machine.copy_out(to.list.descriptors, from.list.descriptors);
+  if (from.list.descriptors_in_l2)
+    std::swap(to.list.descriptors, state.keyframe.fresh);
+  else
+    machine.copy_out(to.list.descriptors, from.list.descriptors);
   machine.copy_out(to.landmarks, from.landmarks);
   to.list.count = from.list.count;
   state.time_since_keyframe = 0;
@@ -121,34 +127,30 @@ void store_whole_keyframe(FrontEndState<P>& state, const Frame<P>& frame) {
 template <class P>
 void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame) {
   using I32 = typename P::I32;
-  using Floats = typename P::template Span<typename P::F32>;
-  work::Machine& machine = state.machine;
-  work::Arena& local = machine.local();
+  work::Arena& local = state.machine.local();
   const work::Arena::Frame memory(local);
-  const auto stage = machine.stage(stages::kTriangulation);
-  const PoseGraph<P> graph(local, state.graph.capacity);
-  const auto interval = local.alloc<Floats>("IMU interval", Preintegration<P>::kFloats);
-  const MatrixView<P> T_before = alloc_matrix<P>(local, "pose of the last keyframe", 4, 4);
-  const MatrixView<P> T_now = alloc_matrix<P>(local, "pose of the keyframe", 4, 4);
-  copy_graph_in<P>(machine, graph, state.graph);
-  machine.copy_in(interval, state.keyframe.interval);
-
-  const I32 previous = graph.newest_keyframe();
-  store_pose<P>(T_before, inverse(graph.keyframe(previous).T_world_camera));
-  store_pose<P>(T_now, inverse(frame.T_world_camera));
-  const KeyframeState<P> newest{frame.T_world_camera,
-                                velocity_at(state, frame.T_world_camera, graph, interval)};
-  graph.age_landmarks();
-  const I32 slot = graph.add_keyframe(newest, interval);
-  const Insertion<P> insertion{state,    frame, graph,    CameraConstants<P>(state.rig.camera),
-                               T_before, T_now, previous, slot};
-  inherit_landmarks<P>(insertion);
-  register_observations<P>(insertion);
-  triangulate_landmarks<P>(insertion);
-
-  Preintegration<P>(interval).reset(graph.bias());
-  machine.copy_out(state.keyframe.interval, interval);
-  copy_graph_out<P>(machine, state.graph, graph);
+  const auto stage = state.machine.stage(stages::kTriangulation);
+  constexpr Bytes kPoses(2 * 16 * 4);
+  const auto insert_into = [&](const auto& graph, auto interval, const auto& remove) {
+    const MatrixView<P> T_before = alloc_matrix<P>(local, "pose of the last keyframe", 4, 4);
+    const MatrixView<P> T_now = alloc_matrix<P>(local, "pose of the keyframe", 4, 4);
+    const I32 previous = graph.newest_keyframe();
+    store_pose<P>(T_before, inverse(graph.keyframe(previous).T_world_camera));
+    store_pose<P>(T_now, inverse(frame.T_world_camera));
+    const KeyframeState<P> newest{frame.T_world_camera,
+                                  velocity_at(state, frame.T_world_camera, graph, interval)};
+    graph.age_landmarks();
+    const I32 slot = graph.add_keyframe(newest, interval, remove);
+    with_descriptors(frame.features.list, [&](const auto& words) {
+      const Insertion<P, std::decay_t<decltype(graph)>, std::decay_t<decltype(words)>> insertion{
+          state,    frame, graph,    words, CameraConstants<P>(state.rig.camera),
+          T_before, T_now, previous, slot};
+      inherit_landmarks(insertion);
+      register_observations(insertion);
+      triangulate_landmarks(insertion);
+    });
+  };
+  with_graph_at_hand(state, kPoses + kTriangulationScratch, insert_into);
   store_whole_keyframe<P>(state, frame);
 }
 
@@ -157,20 +159,17 @@ template void insert_keyframe(FrontEndState<work::Counting>&, Frame<work::Counti
 
 template <class P>
 void match_keyframe(const FrontEndState<P>& state, Frame<P>& frame) {
-  using Words = typename P::template Span<typename P::U32>;
   work::Machine& machine = state.machine;
   const auto stage = machine.stage(stages::kFrameMatching);
   const ObservedFeatures<P>& old = state.keyframe.features;
   KeyframeMatches<P>& matches = frame.matches;
   const int capacity = old.list.capacity;
-  const auto descriptors =
-      machine.local().alloc<Words>("descriptors of the keyframe", kDescriptorWords * capacity);
-  machine.copy_in(descriptors, old.list.descriptors);
+  const DescriptorSource<P> descriptors = keyframe_descriptors(state, capacity);
   machine.copy_in(matches.pixels.subspan(0, capacity), old.list.x);
   machine.copy_in(matches.pixels.subspan(matches.first_v, capacity), old.list.y);
   machine.copy_in(matches.landmarks, old.landmarks);
-  levio::match_two_way<P>(machine, frame.features.list.descriptors, frame.features.list.count,
-                          descriptors, old.list.count, state.profile.matcher, matches.list);
+  levio::match_sources<P>(machine, descriptors_of(frame), descriptors, state.profile.matcher,
+                          matches.list);
 }
 
 template <class P>

@@ -36,19 +36,21 @@ FrameReport LevioFrontEnd<P>::process(const FrameInput& input) {
   return report;
 }
 
-/// Features of the image in L2; images that L1 cannot hold are left to the shared extraction.
+/// Features of the image in L2, as a whole or in strips.
 template <class P>
 void LevioFrontEnd<P>::extract(Frame<P>& frame) {
-  if (state_.strips) return extract_frame(state_, frame);
   const auto stage = state_.machine.stage(stages::kExtraction);
   const KeyframeRecord<P>& keyframe = state_.keyframe;
-  frame.features =
-      alloc_observed_features<P>(state_.machine.local(), keyframe.features.list.capacity);
   const Profile& profile = state_.profile;
-  levio::extract_features<P>(
-      state_.machine, keyframe.image, profile.extractor,
-      profile.released ? levio::DescriptorKind::Released : levio::DescriptorKind::Exact,
-      frame.features.list);
+  const auto kind =
+      profile.released ? levio::DescriptorKind::Released : levio::DescriptorKind::Exact;
+  frame.features = alloc_frame_features(state_);
+  FeatureList<P>& list = frame.features.list;
+  if (state_.residence.image)
+    levio::extract_features<P>(state_.machine, keyframe.image, profile.extractor, kind, list);
+  else
+    levio::extract_features_in_strips<P>(state_.machine, keyframe.image, keyframe.blurred,
+                                         profile.extractor, kind, list);
   forget_landmarks(frame);
 }
 

@@ -17,12 +17,25 @@ struct LandmarkSearch {
   float rotation, position;  ///< standard deviation of each axis, rad and m
 };
 
-/// Landmarks in L1, and the features that were found around where a pose puts them.
+/// The features that were found around where a pose puts landmarks, whose points stay in L1 if they
+/// have room there.
 template <class P>
 struct FoundLandmarks {
   typename P::template Span<typename P::F32> points;
+  bool points_in_l2;
   MatchList<P> matches;
 };
+
+/// Whether all that guided matching needs of landmarks has room in L1.
+template <class P>
+bool landmarks_fit(const FrontEndState<P>& state, int features, int landmarks) {
+  constexpr std::int64_t kLandmark = 4 * kDescriptorWords + 4 * 3 + 1;
+  const Bytes matches(6LL * state.keyframe.features.list.capacity);
+  return Bytes(kLandmark * landmarks) + matches +
+             guided_memory(state.profile.guided, state.rig.width, state.rig.height, features,
+                           landmarks) <=
+         state.machine.local().free();
+}
 
 /// Of the landmarks only their points stay in L1.
 template <class P>
@@ -35,16 +48,20 @@ void match_around(const FrontEndState<P>& state, const FeatureList<P>& features,
   const int landmarks = found.points.size() / 3;
   const auto stage = machine.stage(stages::kGuided);
   const work::Arena::Frame descriptions(local);
-  const auto descriptors = local.alloc<typename P::template Span<typename P::U32>>(
-      "landmark descriptors", kDescriptorWords * landmarks);
-  const auto ages =
-      local.alloc<typename P::template Span<typename P::Byte>>("landmark ages", landmarks);
-  machine.copy_in(descriptors, state.graph.descriptors);
-  machine.copy_in(found.points, state.graph.points);
-  machine.copy_in(ages, state.graph.ages);
+  typename P::template Span<typename P::U32> descriptors = state.graph.descriptors;
+  typename P::template Span<typename P::Byte> ages = state.graph.ages;
+  if (!found.points_in_l2) {
+    descriptors = local.alloc<typename P::template Span<typename P::U32>>(
+        "landmark descriptors", kDescriptorWords * landmarks);
+    ages = local.alloc<typename P::template Span<typename P::Byte>>("landmark ages", landmarks);
+    machine.copy_in(descriptors, state.graph.descriptors);
+    machine.copy_in(found.points, state.graph.points);
+    machine.copy_in(ages, state.graph.ages);
+  }
   const GuidedInput<P> input{
-      found.points,   descriptors, ages,      landmarks,  profile.max_landmark_age,
-      T_camera_world, rig.camera,  rig.width, rig.height, profile.extractor.subpixel_steps};
+      found.points,      descriptors, ages,      landmarks,  profile.max_landmark_age,
+      T_camera_world,    rig.camera,  rig.width, rig.height, profile.extractor.subpixel_steps,
+      found.points_in_l2};
   GuidedOptions options = profile.guided;
   options.radius_px = radius_px;
   options.min_depth = profile.optimiser.visual.min_depth;
@@ -61,16 +78,22 @@ levio::LandmarkMatches<P> gather_matches(const FrontEndState<P>& state,
   using F = typename P::F32;
   using I32 = typename P::I32;
   const MatchList<P>& matches = found.matches;
-  state.machine.fork("gather", [&](work::Core& core) {
-    const auto [begin, end] = core.share(matches.count);
-    for (int i : P::range(begin, end)) {
-      const I32 at = I32(matches.reference[i]) * I32(3);
-      for (int c = 0; c < 3; ++c) points[3 * i + c] = F(found.points[I32(at + I32(c))]);
-      const I32 feature = matches.query[i];
-      pixels[2 * i] = state.camera.pixel(features.x[feature]);
-      pixels[2 * i + 1] = state.camera.pixel(features.y[feature]);
-    }
-  });
+  const auto gather_from = [&](const auto& all_points) {
+    state.machine.fork("gather", [&](work::Core& core) {
+      const auto [begin, end] = core.share(matches.count);
+      for (int i : P::range(begin, end)) {
+        const I32 at = I32(matches.reference[i]) * I32(3);
+        for (int c = 0; c < 3; ++c) points[3 * i + c] = F(all_points[I32(at + I32(c))]);
+        const I32 feature = matches.query[i];
+        pixels[2 * i] = state.camera.pixel(features.x[feature]);
+        pixels[2 * i + 1] = state.camera.pixel(features.y[feature]);
+      }
+    });
+  };
+  if (found.points_in_l2)
+    gather_from(state.graph_in_l2.points);
+  else
+    gather_from(found.points);
   return {points, pixels, matches.count};
 }
 
@@ -100,7 +123,9 @@ std::optional<Pose<P>> search_landmarks(const FrontEndState<P>& state, const Fra
   const FeatureList<P>& features = frame.features.list;
   const int landmarks = work::value(state.graph.landmark_count());
   FoundLandmarks<P> found;
-  found.points = local.alloc<Floats>("landmark points", 3 * landmarks);
+  found.points_in_l2 = !landmarks_fit(state, features.count, landmarks);
+  found.points = found.points_in_l2 ? state.graph.points.subspan(0, 3 * landmarks)
+                                    : local.alloc<Floats>("landmark points", 3 * landmarks);
   found.matches = alloc_matches<P>(local, features.capacity, "world matches");
   const Pose<P> T_camera_world = inverse(T_predicted);
   match_around(state, features, T_camera_world, search.radius_px, found);
@@ -173,13 +198,25 @@ using Numbers = typename P::template Span<typename P::U16>;
 template <class P>
 using Flags = typename P::template Span<typename P::Byte>;
 
-/// A copy of an image in local memory.
+/// The image for patch alignment: a copy in local memory, or itself, in L2.
 template <class P>
-ImageView<P> copy_image(work::Machine& machine, std::string_view name, const ImageView<P>& from) {
+ConstImageView<P> image_at_hand(work::Machine& machine, std::string_view name,
+                                const ImageView<P>& from, bool resident) {
+  if (!resident) return from;
   const ImageView<P> to{machine.local().alloc<Flags<P>>(name, from.width * from.height), from.width,
                         from.height};
   machine.copy_in(to.pixels, from.pixels);
   return to;
+}
+
+/// Local memory of align_features() besides the images.
+template <class P>
+Bytes aligning_memory(const FrontEndState<P>& state, bool windows) {
+  constexpr std::int64_t kFeature = 2 * 1 + 2 * 2 + 3 * 2;
+  const PatchAlignmentOptions& options = state.profile.patches;
+  return Bytes(kFeature * state.keyframe.features.list.capacity) +
+         patch_scratch(options, std::max(options.max_shift, options.reach), windows, windows) *
+             state.machine.cores();
 }
 
 /// Places in the present image where features of the keyframe should be.
@@ -257,6 +294,20 @@ void drop_disagreeing(Flags<P> verdicts, MatchList<P>& matches) {
   matches.count = kept;
 }
 
+/// The descriptor of the keyframe's feature `old` becomes that of feature `at`.
+template <class P>
+void copy_descriptor(const FrontEndState<P>& state, int old, const FeatureList<P>& features,
+                     int at) {
+  using U32 = typename P::U32;
+  const auto from =
+      state.keyframe.features.list.descriptors.subspan(kDescriptorWords * old, kDescriptorWords);
+  const auto to = features.descriptors.subspan(kDescriptorWords * at, kDescriptorWords);
+  if (!features.descriptors_in_l2) return state.machine.copy_in(to, from);
+  const typename P::template L2Span<U32> from_l2(from.data(), kDescriptorWords),
+      to_l2(to.data(), kDescriptorWords);
+  for (int w : P::range(0, kDescriptorWords)) to_l2[w] = U32(from_l2[w]);
+}
+
 /// Those that were found become features and matches.
 template <class P>
 void adopt_found(const FrontEndState<P>& state, const Predictions<P>& predictions, Flags<P> found,
@@ -275,9 +326,7 @@ void adopt_found(const FrontEndState<P>& state, const Predictions<P>& prediction
     features.x[at] = work::narrow<U16>(I32(predictions.x[i]));
     features.y[at] = work::narrow<U16>(I32(predictions.y[i]));
     frame.features.landmarks[at] = work::narrow<U16>(I32(kNoLandmark));
-    state.machine.copy_in(features.descriptors.subspan(kDescriptorWords * at, kDescriptorWords),
-                          state.keyframe.features.list.descriptors.subspan(
-                              kDescriptorWords * work::value(old), kDescriptorWords));
+    copy_descriptor(state, work::value(old), features, at);
     const int match = matches.count++;
     matches.query[match] = work::narrow<U16>(I32(at));
     matches.reference[match] = work::narrow<U16>(old);
@@ -299,20 +348,24 @@ void align_features(const FrontEndState<P>& state, Frame<P>& frame,
   const int steps = state.profile.extractor.subpixel_steps;
   const KeyframeMatches<P>& matches = frame.matches;
   const int n = matches.first_v;
-  const PatchView<P> before{copy_image<P>(machine, "image of the keyframe", state.keyframe.seen),
-                            matches.pixels.subspan(0, n), matches.pixels.subspan(n, n)};
-  const ImageView<P> image = copy_image<P>(machine, "image", state.keyframe.image);
+  const Bytes pixels(static_cast<std::int64_t>(state.rig.width) * state.rig.height);
+  const bool both = pixels * 2 + aligning_memory(state, false) <= local.free();
+  const bool one = both || pixels + aligning_memory(state, true) <= local.free();
+  const PatchView<P> before{
+      image_at_hand<P>(machine, "image of the keyframe", state.keyframe.seen, both),
+      matches.pixels.subspan(0, n), matches.pixels.subspan(n, n), !both};
+  const ConstImageView<P> image = image_at_hand<P>(machine, "image", state.keyframe.image, one);
   const auto aligned = local.alloc<Flags<P>>("aligned", n);
-  align_patches<P>(machine, before, {image, frame.features.list.x, frame.features.list.y}, steps,
-                   options.max_shift, options, matches.list, aligned);
+  align_patches<P>(machine, before, {image, frame.features.list.x, frame.features.list.y, !one},
+                   steps, options.max_shift, options, matches.list, aligned);
   if (options.required) drop_disagreeing<P>(aligned, frame.matches.list);
   if (!T_predicted || !(options.reach > 0)) return;
   const auto matched = local.alloc<Flags<P>>("matched", n);
   mark_matched<P>(matches.list, state.keyframe.features.list.count, matched);
   Predictions<P> predictions(local, n);
   predict_landmarks<P>(state, frame, inverse(*T_predicted), matched, predictions);
-  align_patches<P>(machine, before, {image, predictions.x, predictions.y}, steps, options.reach,
-                   options, predictions.pairs, aligned);
+  align_patches<P>(machine, before, {image, predictions.x, predictions.y, !one}, steps,
+                   options.reach, options, predictions.pairs, aligned);
   adopt_found<P>(state, predictions, aligned, frame);
 }
 

@@ -21,9 +21,8 @@ void extract_frame(FrontEndState<P>& state, Frame<P>& frame) {
   const auto stage = state.machine.stage(stages::kExtraction);
   const ExtractorOptions& options = state.profile.extractor;
   const KeyframeRecord<P>& keyframe = state.keyframe;
-  frame.features =
-      alloc_observed_features<P>(state.machine.local(), keyframe.features.list.capacity);
-  if (state.strips)
+  frame.features = alloc_frame_features(state);
+  if (!state.residence.image)
     extract_features_in_strips<P>(state.machine, keyframe.image, keyframe.blurred, options,
                                   frame.features.list);
   else

@@ -30,6 +30,13 @@ struct Frame {
   Pose<P> T_world_camera{};
 };
 
+/// The descriptors of the frame's features, where they lie.
+template <class P>
+DescriptorSource<P> descriptors_of(const Frame<P>& frame) {
+  const FeatureList<P>& features = frame.features.list;
+  return {features.descriptors, features.count, features.descriptors_in_l2, "tile of descriptors"};
+}
+
 /// Takes the image, as the camera interface does, and counts the frame.
 template <class P>
 void take_image(const FrameInput& input, FrontEndState<P>& state);

@@ -17,40 +17,58 @@ namespace {
 using levio::CameraConstants;
 using levio::LandmarkMatches;
 
-/// The landmarks in L1, and the features that match them. The blocks stay in L1.
+/// Whether descriptors, points and ages of all landmarks have room beside what their matches and
+/// their pose take. Else descriptors pass in tiles, and points and ages of matches come from L2.
 template <class P>
-MatchList<P> match_landmarks(const FrontEndState<P>& state, const Frame<P>& frame) {
+bool landmarks_fit(const FrontEndState<P>& state) {
+  constexpr std::int64_t kLandmark = 4 * kDescriptorWords + 4 * 3 + 1;
+  constexpr std::int64_t kMatch = 3 * 2 + 4 * 5;
+  const int matches = state.keyframe.features.list.capacity;
+  const int cores = state.machine.cores();
+  return Bytes(kLandmark * state.graph.capacity.landmarks + kMatch * matches) +
+             levio::epnp_memory(matches, cores) <=
+         state.machine.local().free();
+}
+
+/// The features that match landmarks.
+template <class P>
+MatchList<P> match_landmarks(const FrontEndState<P>& state, const Frame<P>& frame, bool resident) {
+  using Words = typename P::template Span<typename P::U32>;
   work::Machine& machine = state.machine;
   const PoseGraph<P>& graph = state.graph;
-  const auto descriptors = machine.local().alloc<typename P::template Span<typename P::U32>>(
-      "landmark descriptors", kDescriptorWords * graph.capacity.landmarks);
+  Words descriptors = graph.descriptors;
+  if (resident)
+    descriptors = machine.local().alloc<Words>("landmark descriptors",
+                                               kDescriptorWords * graph.capacity.landmarks);
   MatchList<P> list =
       alloc_matches<P>(machine.local(), frame.features.list.capacity, "world matches");
-  machine.copy_in(descriptors, graph.descriptors);
-  levio::match_two_way<P>(machine, frame.features.list.descriptors, frame.features.list.count,
-                          descriptors, work::value(graph.landmark_count()), state.profile.matcher,
-                          list);
+  if (resident) machine.copy_in(descriptors, graph.descriptors);
+  const DescriptorSource<P> reference{descriptors, work::value(graph.landmark_count()), !resident,
+                                      "tile of landmark descriptors"};
+  levio::match_sources<P>(machine, descriptors_of(frame), reference, state.profile.matcher, list);
   return list;
 }
 
-/// The matches with landmarks that are not too old, side by side; marks their features.
 template <class P>
+struct MatchedSpans {
+  using Floats = typename P::template Span<typename P::F32>;
+
+  MatchedSpans(work::Arena& local, int matches)
+      : points(local.alloc<Floats>("matched points", 3 * matches)),
+        pixels(local.alloc<Floats>("matched pixels", 2 * matches)) {}
+
+  Floats points, pixels;
+};
+
+/// The matches with landmarks that are not too old, side by side; marks their features.
+/// @param points, ages  of all landmarks
+template <class P, class Points, class Ages>
 LandmarkMatches<P> gather(const FrontEndState<P>& state, const Frame<P>& frame,
-                          const MatchList<P>& list) {
+                          const MatchList<P>& list, const Points& points, const Ages& ages,
+                          const MatchedSpans<P>& matched) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   using U16 = typename P::U16;
-  using Floats = typename P::template Span<F>;
-  work::Machine& machine = state.machine;
-  work::Arena& local = machine.local();
-  const int capacity = state.graph.capacity.landmarks;
-  const auto points = local.alloc<Floats>("landmark points", 3 * capacity);
-  const auto ages =
-      local.alloc<typename P::template Span<typename P::Byte>>("landmark ages", capacity);
-  const auto matched_points = local.alloc<Floats>("matched points", 3 * list.count);
-  const auto matched_pixels = local.alloc<Floats>("matched pixels", 2 * list.count);
-  machine.copy_in(points, state.graph.points);
-  machine.copy_in(ages, state.graph.ages);
   int kept = 0;
   for (int i : P::range(0, list.count)) {
     const I32 landmark = list.reference[i];
@@ -58,13 +76,33 @@ LandmarkMatches<P> gather(const FrontEndState<P>& state, const Frame<P>& frame,
     if (age > I32(state.profile.max_landmark_age)) continue;
     const I32 feature = list.query[i];
     const I32 at = landmark * I32(3);
-    for (int c = 0; c < 3; ++c) matched_points[3 * kept + c] = F(points[I32(at + I32(c))]);
-    matched_pixels[2 * kept] = state.camera.pixel(frame.features.list.x[feature]);
-    matched_pixels[2 * kept + 1] = state.camera.pixel(frame.features.list.y[feature]);
+    for (int c = 0; c < 3; ++c) matched.points[3 * kept + c] = F(points[I32(at + I32(c))]);
+    matched.pixels[2 * kept] = state.camera.pixel(frame.features.list.x[feature]);
+    matched.pixels[2 * kept + 1] = state.camera.pixel(frame.features.list.y[feature]);
     frame.features.landmarks[feature] = work::narrow<U16>(landmark);
     ++kept;
   }
-  return {matched_points, matched_pixels, kept};
+  return {matched.points, matched.pixels, kept};
+}
+
+/// gather() from copies in local memory, or from L2.
+template <class P>
+LandmarkMatches<P> gather(const FrontEndState<P>& state, const Frame<P>& frame,
+                          const MatchList<P>& list, bool resident) {
+  work::Machine& machine = state.machine;
+  work::Arena& local = machine.local();
+  if (!resident)
+    return gather<P>(state, frame, list, state.graph_in_l2.points, state.graph_in_l2.ages,
+                     MatchedSpans<P>(local, list.count));
+  const int capacity = state.graph.capacity.landmarks;
+  const auto points =
+      local.alloc<typename P::template Span<typename P::F32>>("landmark points", 3 * capacity);
+  const auto ages =
+      local.alloc<typename P::template Span<typename P::Byte>>("landmark ages", capacity);
+  const MatchedSpans<P> matched(local, list.count);
+  machine.copy_in(points, state.graph.points);
+  machine.copy_in(ages, state.graph.ages);
+  return gather<P>(state, frame, list, points, ages, matched);
 }
 
 }  // namespace
@@ -79,10 +117,11 @@ std::optional<Pose<P>> pose_from_landmarks(const FrontEndState<P>& state,
   LandmarkMatches<P> matches;
   {
     const auto stage = state.machine.stage(stages::kWorldMatching);
-    const MatchList<P> list = match_landmarks(state, frame);
+    const bool resident = landmarks_fit(state);
+    const MatchList<P> list = match_landmarks(state, frame, resident);
     report.world_matches = list.count;
     if (list.count < profile.min_world_matches) return std::nullopt;
-    matches = gather(state, frame, list);
+    matches = gather(state, frame, list, resident);
   }
   report.world_matches = matches.n;
   if (!profile.use_epnp || matches.n < profile.min_world_matches) return std::nullopt;
@@ -106,17 +145,19 @@ LEVIOSIM_INSTANTIATE(work::Counting)
 
 namespace {
 
-/// Both views of all matches, in pixels and in normalised coordinates.
+/// Both views of all matches, in pixels and in normalised coordinates. Either may be missing.
 template <class P>
 struct Views {
   using Floats = typename P::template Span<typename P::F32>;
 
-  Views(work::Arena& local, int matches)
-      : pixels_a(local.alloc<Floats>("keypoints of the keyframe", 2 * matches)),
-        pixels_b(local.alloc<Floats>("keypoints", 2 * matches)),
-        a(local.alloc<Floats>("normalised keypoints of the keyframe", 2 * matches)),
-        b(local.alloc<Floats>("normalised keypoints", 2 * matches)) {}
-
+  void alloc_pixels(work::Arena& local, int matches) {
+    pixels_a = local.alloc<Floats>("keypoints of the keyframe", 2 * matches);
+    pixels_b = local.alloc<Floats>("keypoints", 2 * matches);
+  }
+  void alloc_normalised(work::Arena& local, int matches) {
+    a = local.alloc<Floats>("normalised keypoints of the keyframe", 2 * matches);
+    b = local.alloc<Floats>("normalised keypoints", 2 * matches);
+  }
   levio::PixelMatches<P> pixels(int n) const { return {pixels_a, pixels_b, n}; }
   levio::TwoViewMatches<P> normalised(int n) const { return {a, b, n}; }
 
@@ -128,6 +169,13 @@ void put(typename P::template Span<typename P::F32> to, int i, typename P::F32 x
          typename P::F32 y) {
   to[2 * i] = x;
   to[2 * i + 1] = y;
+}
+
+/// Local memory of the estimate with pixels and normalised coordinates at once.
+Bytes memory_of_both_views(int matches, int cores) {
+  constexpr std::int64_t kMatch = 4 * 2 * 4 + 1;
+  return Bytes(kMatch * matches + 4 * 9) +
+         std::max(levio::essential_memory(matches, cores), levio::recovery_memory(matches, cores));
 }
 
 /// The master's work: four divisions per match.
@@ -143,8 +191,11 @@ void gather(const FrontEndState<P>& state, const Frame<P>& frame, const CameraCo
     const F old_u = state.camera.pixel(matches.u(old)), old_v = state.camera.pixel(matches.v(old));
     const F u = state.camera.pixel(frame.features.list.x[now]);
     const F v = state.camera.pixel(frame.features.list.y[now]);
-    put<P>(views.pixels_a, i, old_u, old_v);
-    put<P>(views.pixels_b, i, u, v);
+    if (views.pixels_a.size() > 0) {
+      put<P>(views.pixels_a, i, old_u, old_v);
+      put<P>(views.pixels_b, i, u, v);
+    }
+    if (views.a.size() == 0) continue;
     const Vec2<P> a = camera.normalised(old_u, old_v);
     const Vec2<P> b = camera.normalised(u, v);
     put<P>(views.a, i, a.x, a.y);
@@ -153,6 +204,11 @@ void gather(const FrontEndState<P>& state, const Frame<P>& frame, const CameraCo
 }
 
 }  // namespace
+
+template <class P>
+Bytes keyframe_pose_memory(const FrontEndState<P>& state) {
+  return memory_of_both_views(state.keyframe.features.list.capacity, state.machine.cores());
+}
 
 template <class P>
 Pose<P> pose_from_keyframe(const FrontEndState<P>& state, levio::ShiftRegister<P>& random,
@@ -170,14 +226,31 @@ Pose<P> pose_from_keyframe(const FrontEndState<P>& state, levio::ShiftRegister<P
   const work::Arena::Frame memory(local);
   const auto stage = machine.stage(stages::kEightPoint);
   const CameraConstants<P> camera(state.rig.camera);
-  const Views<P> views(local, n);
+  // Without room for both, pixels take the place of normalised coordinates when those are done
+  // with.
+  const bool both = memory_of_both_views(n, machine.cores()) <= local.free();
+  Views<P> views;
+  if (both) {
+    views.alloc_pixels(local, n);
+    views.alloc_normalised(local, n);
+  }
   const auto inliers = local.alloc<typename P::template Span<typename P::Byte>>("inlier mask", n);
   const MatrixView<P> essential = alloc_matrix<P>(local, "best essential matrix", 3, 3);
-  gather(state, frame, camera, views);
-  const F pixel = F(profile.essential_inlier_px) / camera.fx();
-  const levio::EssentialResult<P> found = levio::estimate_essential<P>(
-      machine, views.normalised(n), pixel * pixel, random, profile.essential, essential, inliers);
+  levio::EssentialResult<P> found;
+  {
+    const work::Arena::Frame normalised(local);
+    if (!both) views.alloc_normalised(local, n);
+    gather(state, frame, camera, views);
+    const F pixel = F(profile.essential_inlier_px) / camera.fx();
+    found = levio::estimate_essential<P>(machine, views.normalised(n), pixel * pixel, random,
+                                         profile.essential, essential, inliers);
+  }
   if (!found.ok) return last.T_world_camera;
+  if (!both) {
+    views = {};
+    views.alloc_pixels(local, n);
+    gather(state, frame, camera, views);
+  }
   const levio::RecoveredPose<P> motion =
       levio::recover_pose<P>(machine, essential, views.pixels(n), camera);
   if (!motion.ok) return last.T_world_camera;
@@ -192,6 +265,7 @@ Pose<P> pose_from_keyframe(const FrontEndState<P>& state, levio::ShiftRegister<P
 }
 
 #define LEVIOSIM_INSTANTIATE(P)                                                          \
+  template Bytes keyframe_pose_memory(const FrontEndState<P>&);                          \
   template Pose<P> pose_from_keyframe(const FrontEndState<P>&, levio::ShiftRegister<P>&, \
                                       const Frame<P>&, const RotationCheck<P>&, FrameReport&);
 LEVIOSIM_INSTANTIATE(work::Native)

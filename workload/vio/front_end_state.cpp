@@ -3,12 +3,20 @@
 namespace leviosim::vio {
 namespace {
 
-/// Whether the image, its blurred copy and the features exceed the local memory.
+/// Descriptors stay where those of two frames have room, as matching needs them. Places take theirs
+/// from local memory (next/loop).
 template <class P>
-bool needs_strips(const ExtractorOptions& options, const Rig& rig, const work::Machine& machine) {
-  const Bytes features = observed_features_size<P>(options.max_features(rig.width, rig.height));
-  return features + options.memory_of_whole_image(rig.width, rig.height, machine.cores()) >
-         machine.local().capacity();
+Residence residence_in(const work::Machine& machine, const Profile& profile, const Rig& rig) {
+  const ExtractorOptions& options = profile.extractor;
+  const int capacity = options.max_features(rig.width, rig.height);
+  const Bytes room = machine.local().capacity();
+  Residence residence;
+  residence.descriptors =
+      profile.loop.enabled || observed_features_size<P>(capacity, true) * 2 <= room;
+  residence.image = observed_features_size<P>(capacity, residence.descriptors) +
+                        options.memory_of_whole_image(rig.width, rig.height, machine.cores()) <=
+                    room;
+  return residence;
 }
 
 }  // namespace
@@ -21,12 +29,32 @@ FrontEndState<P>::FrontEndState(const Profile& parameters, const Rig& camera_rig
       rig(camera_rig),
       machine(cluster),
       camera(rig.camera, profile.extractor.subpixel_steps),
-      strips(needs_strips<P>(profile.extractor, rig, cluster)),
+      residence(residence_in<P>(cluster, profile, rig)),
       keyframe(keyframe_memory, profile.extractor.max_features(rig.width, rig.height), rig.width,
-               rig.height, strips, profile.patches.enabled && !strips, profile.stillness),
+               rig.height, residence, profile.patches.enabled, profile.stillness),
       graph(in_l2),
       graph_in_l2(seen_from_cluster<P>(in_l2)) {}
 
+template <class P>
+ObservedFeatures<P> alloc_frame_features(const FrontEndState<P>& state) {
+  work::Arena& local = state.machine.local();
+  const int capacity = state.keyframe.features.list.capacity;
+  ObservedFeatures<P> features;
+  if (state.residence.descriptors) {
+    features.list = alloc_features<P>(local, capacity);
+  } else {
+    features.list = alloc_keypoints<P>(local, capacity);
+    features.list.descriptors = state.keyframe.fresh;
+    features.list.descriptors_in_l2 = true;
+  }
+  features.landmarks =
+      local.alloc<typename P::template Span<typename P::U16>>("landmarks of features", capacity);
+  return features;
+}
+
+template ObservedFeatures<work::Native> alloc_frame_features(const FrontEndState<work::Native>&);
+template ObservedFeatures<work::Counting> alloc_frame_features(
+    const FrontEndState<work::Counting>&);
 template struct FrontEndState<work::Native>;
 template struct FrontEndState<work::Counting>;
 

@@ -73,33 +73,33 @@ struct ObservedFeatures {
   typename P::template Span<typename P::U16> landmarks;
 };
 
+/// What features and their landmarks take, with their descriptors or without.
 template <class P>
-ObservedFeatures<P> alloc_observed_features(work::Arena& arena, int capacity) {
-  ObservedFeatures<P> features;
-  features.list = alloc_features<P>(arena, capacity);
-  features.landmarks =
-      arena.alloc<typename P::template Span<typename P::U16>>("landmarks of features", capacity);
-  return features;
+Bytes observed_features_size(int capacity, bool descriptors) {
+  using Half = typename P::U16;
+  const std::size_t each =
+      3 * sizeof(Half) + (descriptors ? kDescriptorWords * sizeof(typename P::U32) : 0);
+  return Bytes(static_cast<std::int64_t>(each) * capacity);
 }
 
-/// What alloc_observed_features() takes.
-template <class P>
-Bytes observed_features_size(int capacity) {
-  using Half = typename P::U16;
-  constexpr std::size_t kEach = 3 * sizeof(Half) + kDescriptorWords * sizeof(typename P::U32);
-  return Bytes(static_cast<std::int64_t>(kEach) * capacity);
-}
+/// What lies in L2 since local memory has no room for it. It depends on sizes only, so that it is
+/// the same in every frame.
+struct Residence {
+  bool image = true;        ///< the whole image and its blurred copy have room; else strips of them
+  bool descriptors = true;  ///< those of two frames have room; else those of none stay
+};
 
 template <class P>
 struct KeyframeRecord {
   using F = typename P::F32;
 
-  /// @param strips       whether features are extracted from strips of the image, which takes a
-  ///                     blurred copy in L2
+  /// @param residence    what is missing in local memory lies here
   /// @param keeps_image  whether the keyframe's image stays
-  KeyframeRecord(work::Arena& arena, int capacity, int width, int height, bool strips,
-                 bool keeps_image, const StillnessOptions& standstill)
-      : features(alloc_observed_features<P>(arena, capacity)),
+  KeyframeRecord(work::Arena& arena, int capacity, int width, int height,
+                 const Residence& residence, bool keeps_image, const StillnessOptions& standstill)
+      : features{alloc_features<P>(arena, capacity),
+                 arena.alloc<typename P::template Span<typename P::U16>>("landmarks of features",
+                                                                         capacity)},
         interval(
             arena.alloc<typename P::template Span<F>>("IMU interval", Preintegration<P>::kFloats)),
         last_sample(arena.alloc<typename P::template Span<F>>("last IMU sample", kImuSampleFloats)),
@@ -112,10 +112,13 @@ struct KeyframeRecord {
       seen = {arena.alloc<typename P::template Span<typename P::Byte>>("image of the keyframe",
                                                                        width * height),
               width, height};
-    if (strips) {
+    if (!residence.image) {
       using Pixels = typename P::template Span<typename P::Byte>;
       blurred = {arena.alloc<Pixels>("blurred image", width * height), width, height};
     }
+    if (!residence.descriptors)
+      fresh = arena.alloc<typename P::template Span<typename P::U32>>(
+          "descriptors of the frame", kDescriptorWords * capacity);
   }
 
   ObservedFeatures<P> features;
@@ -125,6 +128,8 @@ struct KeyframeRecord {
   ImageView<P> image;
   ImageView<P> seen;     ///< that of the keyframe; empty where patches are not aligned
   ImageView<P> blurred;  ///< only where features are extracted from strips
+  /// Descriptors of the present frame, only where they do not stay in local memory.
+  typename P::template Span<typename P::U32> fresh;
 };
 
 template <class P>
@@ -143,7 +148,7 @@ struct FrontEndState {
   Rig rig;
   work::Machine& machine;
   FeatureCamera<P> camera;
-  bool strips;  ///< the image does not fit in local memory as a whole
+  Residence residence;
   KeyframeRecord<P> keyframe;
   PoseGraph<P> graph;                       ///< in L2, as the source and target of transfers
   PoseGraph<P, L2FromCluster> graph_in_l2;  ///< the graph as a cluster core reaches it
@@ -151,6 +156,10 @@ struct FrontEndState {
   std::uint32_t frame_number = 0;           ///< of the present frame, from 1 on
   float time_since_keyframe = 0;            ///< [s]
 };
+
+/// Room for the features of the frame, in local memory; their descriptors may lie in L2.
+template <class P>
+ObservedFeatures<P> alloc_frame_features(const FrontEndState<P>& state);
 
 // A front end as the odometry sees it: one frame, from pixels and IMU samples to a pose, on the
 // cluster (paper Fig. 1, right side). The two that there are have rooms of their own: levio/ is the

@@ -10,6 +10,10 @@
 
 namespace leviosim::vio {
 
+/// Local memory of pose_from_keyframe(), at most.
+template <class P>
+Bytes keyframe_pose_memory(const FrontEndState<P>& state);
+
 /// Whether R_camera_keyframe, as the essential matrix has it, can be true.
 template <class P>
 using RotationCheck = std::function<bool(const Mat3<P>& R_camera_keyframe)>;

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "workload/math/solve.h"
+#include "workload/vio/graph_at_hand.h"
+#include "workload/vio/keyframe_pose.h"
 #include "workload/vio/stages.h"
 #include "workload/vio/triangulation.h"
 
@@ -12,16 +14,16 @@ namespace leviosim::vio {
 namespace {
 
 /// Not so old that it is skipped, as those are that have retired.
-template <class P>
-bool is_in_use(const FrontEndState<P>& state, const PoseGraph<P>& graph, typename P::I32 landmark) {
+template <class P, class Graph>
+bool is_in_use(const FrontEndState<P>& state, const Graph& graph, typename P::I32 landmark) {
   using I32 = typename P::I32;
   return bool(I32(graph.ages[landmark]) <= I32(state.profile.max_landmark_age));
 }
 
 /// Landmarks that were recognised, directly or through the features of the last keyframe.
-template <class P>
-void register_observations(const FrontEndState<P>& state, const Frame<P>& frame,
-                           const PoseGraph<P>& graph, typename P::I32 slot, bool aligned) {
+template <class P, class Graph, class Words>
+void register_observations(const FrontEndState<P>& state, const Frame<P>& frame, const Graph& graph,
+                           const Words& descriptors, typename P::I32 slot, bool aligned) {
   using I32 = typename P::I32;
   using U16 = typename P::U16;
   const typename P::Function function("register_observations");
@@ -52,7 +54,7 @@ void register_observations(const FrontEndState<P>& state, const Frame<P>& frame,
     }
     if (graph.add_observation(slot, landmark, u, v))
       graph.update_descriptor(landmark,
-                              features.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
+                              descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
   }
 }
 
@@ -77,9 +79,10 @@ Vec3<P> any_point_of(const Pose<P>& T_camera_world, const Vec2<P>& seen, typenam
 }
 
 /// Matches that show no landmark yet become one.
-template <class P>
-void add_landmarks(const FrontEndState<P>& state, const Frame<P>& frame, const PoseGraph<P>& graph,
-                   typename P::I32 previous_slot, typename P::I32 slot, float any_depth) {
+template <class P, class Graph, class Words>
+void add_landmarks(const FrontEndState<P>& state, const Frame<P>& frame, const Graph& graph,
+                   const Words& descriptors, typename P::I32 previous_slot, typename P::I32 slot,
+                   float any_depth) {
   using I32 = typename P::I32;
   using U16 = typename P::U16;
   const typename P::Function function("triangulate_landmarks");
@@ -99,8 +102,7 @@ void add_landmarks(const FrontEndState<P>& state, const Frame<P>& frame, const P
                                              ? point_of<P>(state, T_old, T_now, before, now)
                                              : any_point_of<P>(T_old, before, any_depth);
     if (!point) continue;
-    const auto words = frame.features.list.descriptors.subspan(I32(feature * I32(kDescriptorWords)),
-                                                               kDescriptorWords);
+    const auto words = descriptors.subspan(I32(feature * I32(kDescriptorWords)), kDescriptorWords);
     const I32 landmark = graph.add_landmark(*point, words);
     if (landmark < I32(0)) return;
     graph.add_observation(previous_slot, landmark, old_u, old_v);
@@ -111,10 +113,9 @@ void add_landmarks(const FrontEndState<P>& state, const Frame<P>& frame, const P
 
 }  // namespace
 
-template <class P>
+template <class P, class Graph>
 Vec3<P> velocity_at(const FrontEndState<P>& state, const Pose<P>& T_world_camera,
-                    const PoseGraph<P>& graph,
-                    typename P::template Span<typename P::F32> interval) {
+                    const Graph& graph, typename P::template Span<typename P::F32> interval) {
   using F = typename P::F32;
   const KeyframeState<P> last = graph.keyframe(graph.newest_keyframe());
   if (!state.profile.use_imu) {
@@ -128,27 +129,20 @@ Vec3<P> velocity_at(const FrontEndState<P>& state, const Pose<P>& T_world_camera
 template <class P>
 void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame, float any_depth) {
   using I32 = typename P::I32;
-  using Floats = typename P::template Span<typename P::F32>;
-  work::Machine& machine = state.machine;
-  work::Arena& local = machine.local();
-  const work::Arena::Frame memory(local);
-  const auto stage = machine.stage(stages::kTriangulation);
-  const PoseGraph<P> graph(local, state.graph.capacity);
-  const auto interval = local.alloc<Floats>("IMU interval", Preintegration<P>::kFloats);
-  copy_graph_in<P>(machine, graph, state.graph);
-  machine.copy_in(interval, state.keyframe.interval);
-
-  const KeyframeState<P> newest{frame.T_world_camera,
-                                velocity_at(state, frame.T_world_camera, graph, interval)};
-  const I32 previous = graph.newest_keyframe();
-  graph.age_landmarks();
-  const I32 slot = graph.add_keyframe(newest, interval);
-  register_observations(state, frame, graph, slot, any_depth == 0);
-  add_landmarks(state, frame, graph, previous, slot, any_depth);
-
-  Preintegration<P>(interval).reset(graph.bias());
-  machine.copy_out(state.keyframe.interval, interval);
-  copy_graph_out<P>(machine, state.graph, graph);
+  const work::Arena::Frame memory(state.machine.local());
+  const auto stage = state.machine.stage(stages::kTriangulation);
+  const auto insert_into = [&](const auto& graph, auto interval, const auto& remove) {
+    const KeyframeState<P> newest{frame.T_world_camera,
+                                  velocity_at(state, frame.T_world_camera, graph, interval)};
+    const I32 previous = graph.newest_keyframe();
+    graph.age_landmarks();
+    const I32 slot = graph.add_keyframe(newest, interval, remove);
+    with_descriptors(frame.features.list, [&](const auto& words) {
+      register_observations(state, frame, graph, words, slot, any_depth == 0);
+      add_landmarks(state, frame, graph, words, previous, slot, any_depth);
+    });
+  };
+  with_graph_at_hand(state, kTriangulationScratch, insert_into);
   store_keyframe(state, frame);
 }
 
@@ -160,7 +154,10 @@ void store_keyframe(FrontEndState<P>& state, const Frame<P>& frame) {
   const int n = from.count;
   machine.copy_out(to.list.x, from.x.subspan(0, n));
   machine.copy_out(to.list.y, from.y.subspan(0, n));
-  machine.copy_out(to.list.descriptors, from.descriptors.subspan(0, kDescriptorWords * n));
+  if (from.descriptors_in_l2)
+    std::swap(to.list.descriptors, state.keyframe.fresh);
+  else
+    machine.copy_out(to.list.descriptors, from.descriptors.subspan(0, kDescriptorWords * n));
   machine.copy_out(to.landmarks, frame.features.landmarks.subspan(0, n));
   to.list.count = n;
   // The camera writes the next image to where the one of the keyframe before was.
@@ -172,6 +169,8 @@ void store_keyframe(FrontEndState<P>& state, const Frame<P>& frame) {
   template void insert_keyframe(FrontEndState<P>&, Frame<P>&, float);                        \
   template Vec3<P> velocity_at(const FrontEndState<P>&, const Pose<P>&, const PoseGraph<P>&, \
                                P::Span<P::F32>);                                             \
+  template Vec3<P> velocity_at(const FrontEndState<P>&, const Pose<P>&,                      \
+                               const PoseGraph<P, LongBlocksInL2>&, P::Span<P::F32>);        \
   template void store_keyframe(FrontEndState<P>&, const Frame<P>&);
 LEVIOSIM_INSTANTIATE(work::Native)
 LEVIOSIM_INSTANTIATE(work::Counting)
@@ -189,23 +188,39 @@ void alloc_keyframe_matches(const FrontEndState<P>& state, Frame<P>& frame) {
 }
 
 template <class P>
-void match_keyframe(const FrontEndState<P>& state, Frame<P>& frame) {
+DescriptorSource<P> keyframe_descriptors(const FrontEndState<P>& state, int number) {
   using Words = typename P::template Span<typename P::U32>;
+  work::Machine& machine = state.machine;
+  const FeatureList<P>& old = state.keyframe.features.list;
+  const Bytes words(4LL * kDescriptorWords * old.capacity);
+  const Bytes matching(6LL * old.capacity + 4LL * machine.cores());
+  if (words + std::max(matching, keyframe_pose_memory(state)) > machine.local().free())
+    return {old.descriptors, old.count, true, "tile of the keyframe's descriptors"};
+  const auto descriptors =
+      machine.local().alloc<Words>("descriptors of the keyframe", kDescriptorWords * old.capacity);
+  machine.copy_in(descriptors.subspan(0, kDescriptorWords * number), old.descriptors);
+  return {descriptors, old.count};
+}
+
+template <class P>
+void match_keyframe(const FrontEndState<P>& state, Frame<P>& frame) {
   work::Machine& machine = state.machine;
   const auto stage = machine.stage(stages::kFrameMatching);
   const ObservedFeatures<P>& old = state.keyframe.features;
   KeyframeMatches<P>& matches = frame.matches;
   const int n = old.list.count;
-  const auto descriptors = machine.local().alloc<Words>("descriptors of the keyframe",
-                                                        kDescriptorWords * old.list.capacity);
-  machine.copy_in(descriptors.subspan(0, kDescriptorWords * n), old.list.descriptors);
+  const DescriptorSource<P> descriptors = keyframe_descriptors(state, n);
   machine.copy_in(matches.pixels.subspan(0, n), old.list.x);
   machine.copy_in(matches.pixels.subspan(matches.first_v, n), old.list.y);
   machine.copy_in(matches.landmarks.subspan(0, n), old.landmarks);
-  match_two_way<P>(machine, frame.features.list.descriptors, frame.features.list.count, descriptors,
-                   n, state.profile.matcher, matches.list);
+  match_sources<P>(machine, descriptors_of(frame), descriptors, state.profile.matcher,
+                   matches.list);
 }
 
+template DescriptorSource<work::Native> keyframe_descriptors(const FrontEndState<work::Native>&,
+                                                             int);
+template DescriptorSource<work::Counting> keyframe_descriptors(const FrontEndState<work::Counting>&,
+                                                               int);
 template void alloc_keyframe_matches(const FrontEndState<work::Native>&, Frame<work::Native>&);
 template void alloc_keyframe_matches(const FrontEndState<work::Counting>&, Frame<work::Counting>&);
 template void match_keyframe(const FrontEndState<work::Native>&, Frame<work::Native>&);

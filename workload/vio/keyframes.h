@@ -20,9 +20,10 @@ void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame, float any_depth);
 /// Velocity of the camera in the world: the last keyframe's, carried on by the IMU; without an IMU,
 /// the mean since the last keyframe.
 /// @param interval  the motion since the last keyframe
-template <class P>
+/// @tparam Graph  PoseGraph in whatever memory
+template <class P, class Graph>
 Vec3<P> velocity_at(const FrontEndState<P>& state, const Pose<P>& T_world_camera,
-                    const PoseGraph<P>& graph, typename P::template Span<typename P::F32> interval);
+                    const Graph& graph, typename P::template Span<typename P::F32> interval);
 
 /// The frame's features take the place of the last keyframe's. Works inside a stage.
 template <class P>
@@ -34,8 +35,14 @@ void store_keyframe(FrontEndState<P>& state, const Frame<P>& frame);
 template <class P>
 void alloc_keyframe_matches(const FrontEndState<P>& state, Frame<P>& frame);
 
-/// Fills frame.matches. Leaves the keyframe's descriptors in L1 above them: the caller frees them
-/// when the pose is known (paper, memory table: 8-point).
+/// The keyframe's descriptors for matching. In L1, if they have room there beside what the pose of
+/// the frame may take; the caller frees them when it is known (paper, memory table: 8-point). Else
+/// they pass in tiles. Works inside a stage.
+/// @param number  of features that are copied
+template <class P>
+DescriptorSource<P> keyframe_descriptors(const FrontEndState<P>& state, int number);
+
+/// Fills frame.matches, and leaves the keyframe's descriptors in L1 above them.
 template <class P>
 void match_keyframe(const FrontEndState<P>& state, Frame<P>& frame);
 

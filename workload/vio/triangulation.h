@@ -19,9 +19,11 @@ struct Triangulated {
   Vec3<P> point;  ///< in the world frame; zero if not valid
 };
 
+inline constexpr Bytes kTriangulationScratch{176};
+
 /// The point seen at `a` and `b` (normalised image coordinates) by two cameras.
 ///
-/// May lie behind a camera. Takes 176 bytes of scratch during the call.
+/// May lie behind a camera. Takes kTriangulationScratch during the call.
 template <class P>
 Triangulated<P> triangulate(const Pose<P>& T_a_world, const Pose<P>& T_b_world, const Vec2<P>& a,
                             const Vec2<P>& b, work::Arena& scratch);

@@ -101,26 +101,27 @@ void detect_all(work::Machine& machine, ConstImageView<P> image, ExtractionTable
 
 inline constexpr host::DiscMask kDisc = host::make_disc_mask(kDiscRadius * kDiscRadius + 1);
 
-/// Writes the descriptors of the features [features.begin, features.end): the fork "describe".
+/// Writes the descriptors of the features [features.begin, features.end) of the list to `words`,
+/// the first of them to the first place: the fork "describe".
 template <class P, class Pattern>
 void describe_all(work::Machine& machine, ConstImageView<P> blurred,
                   const ExtractionTables<P>& tables, Pattern pattern, work::Share features,
-                  FeatureList<P>& out) {
+                  const FeatureList<P>& list, typename P::template Span<typename P::U32> words) {
   using I = typename P::I32;
   const int rows_above = blurred.top * blurred.width;
   machine.fork("describe", [&](work::Core& core) {
     const auto [begin, end] = core.share(features.end - features.begin);
     for (int i : P::range(features.begin + begin, features.begin + end)) {
-      const I column = out.x[i];
-      const I row = out.y[i];
+      const I column = list.x[i];
+      const I row = list.y[i];
       // The windows around it are streams from a computed place.
       const int centre = work::value(I(row * I(blurred.width) + column)) - rows_above;
       const Moments<P> moments = moments_at<P>(kDisc, blurred, centre, [&]() LEVIOSIM_HOST_INLINED {
         return disc_moments<P>(blurred.pixels, blurred.width, centre, tables.disc);
       });
-      describe<P, RotatedPoints>(blurred.pixels, blurred.width, centre, direction_of<P>(moments),
-                                 pattern,
-                                 out.descriptors.subspan(kDescriptorWords * i, kDescriptorWords));
+      describe<P, RotatedPoints>(
+          blurred.pixels, blurred.width, centre, direction_of<P>(moments), pattern,
+          words.subspan(kDescriptorWords * (i - features.begin), kDescriptorWords));
     }
   });
 }

@@ -82,7 +82,8 @@ void extract_features(work::Machine& machine, ImageView<P> image_in_l2,
   });
 
   with_pattern<P>(machine, options, [&](auto pattern) {
-    describe_all<P>(machine, work.blurred, work.tables, pattern, {0, out.count}, out);
+    describe_all<P>(machine, work.blurred, work.tables, pattern, {0, out.count}, out,
+                    out.descriptors);
   });
   // Last, because descriptors are of whole pixels.
   if (options.subpixel_steps > 1)

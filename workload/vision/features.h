@@ -39,26 +39,45 @@ template <class P>
 using ConstImageView = ImageView<P, const typename P::Byte>;
 
 /// Up to `capacity` features, of which the first `count` are valid. Feature i lies at pixel
-/// (x[i], y[i]) and has the descriptor words descriptors[8 i] … descriptors[8 i + 7].
+/// (x[i], y[i]) and has the descriptor words descriptors[8 i] … descriptors[8 i + 7], which lie in
+/// local memory if they have room there.
 template <class P>
 struct FeatureList {
   typename P::template Span<typename P::U16> x, y;
   typename P::template Span<typename P::U32> descriptors;
   int count = 0;
   int capacity = 0;
+  bool descriptors_in_l2 = false;  ///< then they are source and target of transfers only
 };
 
-/// An empty list in `arena`: blocks "keypoints" (4 bytes each) and "descriptors" (32 bytes each).
+/// Calls use(words) with the descriptors as a core of the cluster reaches them.
+template <class P, class Use>
+decltype(auto) with_descriptors(const FeatureList<P>& list, Use&& use) {
+  using Word = typename P::U32;
+  if (list.descriptors_in_l2)
+    return use(
+        typename P::template L2Span<const Word>(list.descriptors.data(), list.descriptors.size()));
+  return use(typename P::template Span<const Word>(list.descriptors));
+}
+
+/// An empty list without descriptors: the block "keypoints" (4 bytes each).
 template <class P>
-FeatureList<P> alloc_features(work::Arena& arena, int capacity) {
+FeatureList<P> alloc_keypoints(work::Arena& arena, int capacity) {
   using Coordinates = typename P::template Span<typename P::U16>;
-  using Words = typename P::template Span<typename P::U32>;
   FeatureList<P> list;
   const Coordinates keypoints = arena.alloc<Coordinates>("keypoints", 2 * capacity);
   list.x = keypoints.subspan(0, capacity);
   list.y = keypoints.subspan(capacity, capacity);
-  list.descriptors = arena.alloc<Words>("descriptors", kDescriptorWords * capacity);
   list.capacity = capacity;
+  return list;
+}
+
+/// An empty list in `arena`: blocks "keypoints" and "descriptors" (32 bytes each).
+template <class P>
+FeatureList<P> alloc_features(work::Arena& arena, int capacity) {
+  FeatureList<P> list = alloc_keypoints<P>(arena, capacity);
+  list.descriptors = arena.alloc<typename P::template Span<typename P::U32>>(
+      "descriptors", kDescriptorWords * capacity);
   return list;
 }
 

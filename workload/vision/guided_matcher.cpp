@@ -1,6 +1,7 @@
 #include "workload/vision/guided_matcher.h"
 
 #include "sim/base/check.h"
+#include "sim/work/tiles.h"
 
 namespace leviosim::vio {
 namespace {
@@ -60,10 +61,11 @@ struct Candidate {
 };
 
 /// The nearest descriptor among the features around (u, v).
-template <class P>
-Candidate<P> search_around(const FeatureList<P>& features, const Cells<P>& cells, typename P::I32 u,
-                           typename P::I32 v, int radius, const HeldDescriptor<P>& descriptor,
-                           int max_distance) {
+/// @param descriptors  of the features
+template <class P, class Words>
+Candidate<P> search_around(const FeatureList<P>& features, const Words& descriptors,
+                           const Cells<P>& cells, typename P::I32 u, typename P::I32 v, int radius,
+                           const HeldDescriptor<P>& descriptor, int max_distance) {
   using I = typename P::I32;
   const typename P::Function function("search_around");
   const I side = cells.side, r = radius;
@@ -81,7 +83,7 @@ Candidate<P> search_around(const FeatureList<P>& features, const Cells<P>& cells
       const I dx = I(features.x[feature]) - u, dy = I(features.y[feature]) - v;
       const I distance_sq = dx * dx + dy * dy;
       if (distance_sq > limit) continue;
-      const I distance = hamming_distance<P>(descriptor, features.descriptors, feature);
+      const I distance = hamming_distance<P>(descriptor, descriptors, feature);
       if (distance < best.distance) best = {feature, distance};
     }
   }
@@ -95,9 +97,10 @@ struct Claims {
   typename P::template Span<typename P::Byte> distance;
 };
 
-template <class P>
-void search(const GuidedInput<P>& input, const FeatureList<P>& features, const Cells<P>& cells,
-            const GuidedOptions& options, work::Share share, const Claims<P>& claims) {
+template <class P, class Words>
+void search(const GuidedInput<P>& input, const FeatureList<P>& features, const Words& descriptors,
+            const Cells<P>& cells, const GuidedOptions& options, work::Share share,
+            const Claims<P>& claims) {
   using F = typename P::F32;
   using I = typename P::I32;
   using U16 = typename P::U16;
@@ -115,12 +118,41 @@ void search(const GuidedInput<P>& input, const FeatureList<P>& features, const C
     const F inverse = F(1.0f) / x.z;
     const F u = F(c.fx) * (x.x * inverse) + F(c.cx), v = F(c.fy) * (x.y * inverse) + F(c.cy);
     if (!(u > 0.0f) || !(v > 0.0f) || !(u < width) || !(v < height)) continue;
-    const Candidate<P> best =
-        search_around<P>(features, cells, work::to_i32(F(u * steps)), work::to_i32(F(v * steps)),
-                         radius, hold_descriptor<P>(input.descriptors, l), options.max_distance);
+    const Candidate<P> best = search_around<P>(
+        features, descriptors, cells, work::to_i32(F(u * steps)), work::to_i32(F(v * steps)),
+        radius, hold_descriptor<P>(input.descriptors, l), options.max_distance);
     claims.feature[l] = work::narrow<U16>(best.feature);
     claims.distance[l] = work::narrow<typename P::Byte>(best.distance);
   }
+}
+
+/// Calls visit(input, first) with all landmarks, or with one tile of them after the other.
+template <class P, class Visit>
+void for_landmarks(work::Machine& machine, const GuidedInput<P>& input, Visit&& visit) {
+  using F = typename P::F32;
+  using U = typename P::U32;
+  using Byte = typename P::Byte;
+  if (!input.in_l2) return visit(input, 0);
+  const work::PassingBlock<P, F> points{"tile of landmark points", input.points, 3};
+  const work::PassingBlock<P, U> words{"tile of landmark descriptors", input.descriptors,
+                                       kDescriptorWords};
+  const work::PassingBlock<P, Byte> ages{"tile of landmark ages", input.ages, 1};
+  // Blocks begin at words.
+  constexpr Bytes kPadding(2 * 4);
+  const work::TilePlan plan =
+      work::plan_tiles(machine.local(), words.name, input.landmarks,
+                       points.item() + words.item() + ages.item(), kPadding);
+  work::for_each_tile<P>(
+      machine, plan,
+      [&](int, const work::Tile& tile, auto of_points, auto of_words, auto of_ages) {
+        GuidedInput<P> part = input;
+        part.points = of_points;
+        part.descriptors = of_words;
+        part.ages = of_ages;
+        part.landmarks = tile.size();
+        visit(part, tile.begin);
+      },
+      points, words, ages);
 }
 
 /// The landmark that gets a feature is its owner.
@@ -152,6 +184,13 @@ void settle(const Claims<P>& claims, int landmarks, int features,
 
 }  // namespace
 
+Bytes guided_memory(const GuidedOptions& options, int width, int height, int features,
+                    int landmarks) {
+  const int cell = options.cell_px;
+  const int cells = ((width + cell - 1) / cell) * ((height + cell - 1) / cell) + 1;
+  return Bytes(2LL * cells + 3LL * landmarks + 4LL * features);
+}
+
 template <class P>
 void match_guided(work::Machine& machine, const GuidedInput<P>& input,
                   const FeatureList<P>& features, const GuidedOptions& options, MatchList<P>& out) {
@@ -167,8 +206,14 @@ void match_guided(work::Machine& machine, const GuidedInput<P>& input,
   const auto owners =
       local.alloc<typename P::template Span<typename P::U16>>("owners", features.count);
   sort_features<P>(features, cells);
-  machine.fork("search", [&](work::Core& core) {
-    search<P>(input, features, cells, options, core.share(input.landmarks), claims);
+  for_landmarks<P>(machine, input, [&](const GuidedInput<P>& part, int first) {
+    const Claims<P> of_part{claims.feature.subspan(first, part.landmarks),
+                            claims.distance.subspan(first, part.landmarks)};
+    with_descriptors(features, [&](const auto& descriptors) {
+      machine.fork("search", [&](work::Core& core) {
+        search<P>(part, features, descriptors, cells, options, core.share(part.landmarks), of_part);
+      });
+    });
   });
   settle<P>(claims, input.landmarks, features.count, owners, out);
 }

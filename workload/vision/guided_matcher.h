@@ -22,7 +22,7 @@ struct GuidedOptions {
   float min_depth = 0.05f;  ///< m; nearer landmarks are out of view
 };
 
-/// Landmarks and the view that they are looked for in; all in local memory.
+/// Landmarks and the view that they are looked for in.
 template <class P>
 struct GuidedInput {
   template <class T>
@@ -32,16 +32,21 @@ struct GuidedInput {
   Span<typename P::U32> descriptors;  ///< 8 words per landmark
   Span<typename P::Byte> ages;
   int landmarks = 0;
-  int max_age = 0;  ///< older ones are left out
+  int max_age = 0;     ///< older ones are left out
   Pose<P> T_camera_world{};
   PinholeCamera camera{};
   int width = 0, height = 0;  ///< px
   int steps = 1;              ///< feature coordinates are in units of 1/steps px
+  bool in_l2 = false;  ///< points, descriptors and ages, which pass through local memory in tiles
 };
 
+/// 3 bytes per landmark, 4 per feature and 2 per cell of the image.
+Bytes guided_memory(const GuidedOptions& options, int width, int height, int features,
+                    int landmarks);
+
 /// Fills `out` with features (query) and landmarks (reference), in the order of the features. It
-/// needs room for every feature. The caller opens the stage. Local memory while it runs: 3 bytes
-/// per landmark, 4 per feature and 2 per cell of the image.
+/// needs room for every feature. The caller opens the stage. Local memory while it runs:
+/// guided_memory(), and tiles of the landmarks if they lie in L2.
 template <class P>
 void match_guided(work::Machine& machine, const GuidedInput<P>& input,
                   const FeatureList<P>& features, const GuidedOptions& options, MatchList<P>& out);

@@ -43,9 +43,10 @@ LEVIOSIM_HOST_INLINE typename P::I32 hamming_distance_on_host(const HeldDescript
 }
 
 /// In how many bits `a` and descriptor `i` of `descriptors` differ.
-template <class P, class Index>
+/// @tparam Words  a span of them, in whatever memory
+template <class P, class Words, class Index>
 LEVIOSIM_HOST_INLINE typename P::I32 hamming_distance(const HeldDescriptor<P>& a,
-                                                      DescriptorWords<P> descriptors, Index i) {
+                                                      const Words& descriptors, Index i) {
   const auto b = descriptors.subspan(Index(i * Index(kDescriptorWords)), kDescriptorWords);
   return host_value(
       [&] {

@@ -17,18 +17,17 @@ struct Comparison {
 }  // namespace
 
 template <class P>
-void match_two_way(work::Machine& machine, DescriptorWords<P> current, int current_count,
-                   DescriptorWords<P> reference, int reference_count, const MatcherOptions& options,
+void match_sources(work::Machine& machine, const DescriptorSource<P>& current,
+                   const DescriptorSource<P>& reference, const MatcherOptions& options,
                    MatchList<P>& out) {
-  two_way::match<P, Comparison>(machine, current, current_count, reference, reference_count,
-                                options, out);
+  two_way::match<P, Comparison>(machine, current, reference, options, out);
 }
 
-template void match_two_way<work::Native>(work::Machine&, DescriptorWords<work::Native>, int,
-                                          DescriptorWords<work::Native>, int, const MatcherOptions&,
-                                          MatchList<work::Native>&);
-template void match_two_way<work::Counting>(work::Machine&, DescriptorWords<work::Counting>, int,
-                                            DescriptorWords<work::Counting>, int,
-                                            const MatcherOptions&, MatchList<work::Counting>&);
+template void match_sources(work::Machine&, const DescriptorSource<work::Native>&,
+                            const DescriptorSource<work::Native>&, const MatcherOptions&,
+                            MatchList<work::Native>&);
+template void match_sources(work::Machine&, const DescriptorSource<work::Counting>&,
+                            const DescriptorSource<work::Counting>&, const MatcherOptions&,
+                            MatchList<work::Counting>&);
 
 }  // namespace leviosim::vio

@@ -39,13 +39,32 @@ struct MatcherOptions {
   int max_distance = 35;  ///< bits; a match is strictly closer (PARAMETERS.md#matching)
 };
 
-/// Matches `current_count` current descriptors to `reference_count` reference descriptors, 8 words
-/// each, all in local memory. `out` needs room for current_count matches; they come in the order of
-/// the current features. The caller opens the stage. Local memory while it runs: a second list of
-/// out.capacity matches and one word per core.
+/// Descriptors in local memory; or in L2, from where they pass through it in tiles.
+template <class P>
+struct DescriptorSource {
+  DescriptorWords<P> words;  ///< 8 per descriptor
+  int count;
+  bool in_l2 = false;
+  std::string_view name = "descriptors";  ///< of their tiles, in the memory table
+};
+
+/// Matches current descriptors to reference descriptors. `out` needs room for current.count
+/// matches; they come in the order of the current features. The caller opens the stage. Local
+/// memory while it runs: a second list of out.capacity matches, one word per core, and tiles: with
+/// current descriptors in tiles the reference descriptors pass once for each of those.
+template <class P>
+void match_sources(work::Machine& machine, const DescriptorSource<P>& current,
+                   const DescriptorSource<P>& reference, const MatcherOptions& options,
+                   MatchList<P>& out);
+
+/// The same, with `current_count` current and `reference_count` reference descriptors in local
+/// memory.
 template <class P>
 void match_two_way(work::Machine& machine, DescriptorWords<P> current, int current_count,
                    DescriptorWords<P> reference, int reference_count, const MatcherOptions& options,
-                   MatchList<P>& out);
+                   MatchList<P>& out) {
+  match_sources<P>(machine, DescriptorSource<P>{current, current_count},
+                   DescriptorSource<P>{reference, reference_count}, options, out);
+}
 
 }  // namespace leviosim::vio

@@ -37,7 +37,7 @@ enum class PatchVerdict : std::int8_t {
 };
 
 /// An image and the features in it that are matched, in local memory. Coordinates are in units of
-/// 1/steps px.
+/// 1/steps px. An image may lie in L2: then a core copies the window around each feature.
 template <class P>
 struct PatchView {
   template <class T>
@@ -45,12 +45,18 @@ struct PatchView {
 
   ConstImageView<P> image;
   Span<typename P::U16> x, y;
+  bool in_l2 = false;  ///< the image
 };
+
+/// Local memory that each core takes: 12 bytes per pixel of a patch, and the windows of images that
+/// lie in L2.
+Bytes patch_scratch(const PatchAlignmentOptions& options, float max_shift, bool before_in_l2,
+                    bool now_in_l2);
 
 /// Moves the features of `now` that `matches` (query) pairs with features of `before` (reference)
 /// to where their patches agree. Features that do not agree within max_shift (px) stay.
 /// One team fork, "align". The caller opens the stage.
-/// Local memory while it runs: 12 bytes per pixel of a patch and core.
+/// Local memory while it runs: patch_scratch() of each core.
 /// @param aligned  what became of each match, a PatchVerdict
 template <class P>
 void align_patches(work::Machine& machine, const PatchView<P>& before, const PatchView<P>& now,

@@ -12,15 +12,24 @@ namespace {
 /// Rows of pixels that two buffers of a pass over `rows` rows take.
 int rows_of_buffers(int rows, int reach) { return 2 * (rows + 2 * reach); }
 
+/// Bytes of two buffers for the descriptors of all features that rows of cells can have.
+Bytes descriptors_of(const ExtractorOptions& options, int width, int cell_rows) {
+  const int features = cell_rows * options.cells_along(width) * options.per_cell;
+  return Bytes(2LL * features * kDescriptorWords * 4);
+}
+
 /// The most rows of cells whose strips fit in `memory` in every pass.
-int cell_rows_per_strip(const ExtractorOptions& options, int width, int height,
+/// @param descriptors  whether descriptors pass, too
+int cell_rows_per_strip(const ExtractorOptions& options, int width, int height, bool descriptors,
                         const work::Arena& memory) {
   const auto missing = [&](int cell_rows) {
     const int rows = cell_rows * options.cell;
-    const int most = std::max({rows_of_buffers(rows, kHarrisReach),
-                               rows_of_buffers(rows, kBlurRadius) + rows_of_buffers(rows, 0),
-                               rows_of_buffers(rows, kDescriptorReach)});
-    return Bytes(static_cast<std::int64_t>(most) * width) - memory.free();
+    const auto bytes = [&](int n) { return Bytes(static_cast<std::int64_t>(n) * width); };
+    const Bytes described = descriptors ? descriptors_of(options, width, cell_rows) : Bytes(0);
+    return std::max({bytes(rows_of_buffers(rows, kHarrisReach)),
+                     bytes(rows_of_buffers(rows, kBlurRadius) + rows_of_buffers(rows, 0)),
+                     bytes(rows_of_buffers(rows, kDescriptorReach)) + described}) -
+           memory.free();
   };
   if (missing(1) > Bytes(0))
     throw InputError(fmt::format(
@@ -35,98 +44,145 @@ int cell_rows_per_strip(const ExtractorOptions& options, int width, int height,
   return cell_rows;
 }
 
+/// Calls work(i, strip, rows) for every strip of `image_in_l2`, where `rows` is a view of the rows
+/// that were read.
+template <class P, class Work>
+void for_each_strip(work::Machine& machine, ConstImageView<P> image_in_l2,
+                    const work::TilePlan& plan, Work&& work) {
+  const int width = image_in_l2.width;
+  work::for_each_tile<P>(
+      machine, plan,
+      [&](int i, const work::Tile& strip, typename P::template Span<typename P::Byte> rows) {
+        work(i, strip, ConstImageView<P>{rows, width, image_in_l2.height, strip.first});
+      },
+      work::PassingBlock<P, typename P::Byte>{"image strip", image_in_l2.pixels, width});
+}
+
 /// Blurs all rows; strips of the result go back to L2 while the next ones are computed.
 template <class P>
 void blur_in_strips(work::Machine& machine, ConstImageView<P> image_in_l2,
-                    ImageView<P> blurred_in_l2, const ExtractionTables<P>& tables, int rows) {
-  using Pixels = typename P::template Span<typename P::Byte>;
+                    ImageView<P> blurred_in_l2, const StripSteps<P>& steps, int rows) {
   const work::Arena::Frame memory(machine.local());
-  const int width = image_in_l2.width;
-  const StripPlan plan(0, image_in_l2.height, rows, kBlurRadius, image_in_l2.height);
-  std::array<Pixels, 2> results;
-  for (Pixels& result : results)
-    result = machine.local().template alloc<Pixels>("blurred strip", rows * width);
-  std::array<work::Machine::Ticket, 2> under_way;
-  for_each_strip<P>(
-      machine, image_in_l2, plan, [&](int i, const Strip& strip, ConstImageView<P> view) {
-        const auto k = static_cast<std::size_t>(i % 2);
-        if (i >= 2) machine.wait(under_way[k]);
-        const ImageView<P> result{results[k], width, image_in_l2.height, strip.begin};
-        machine.fork("blur", [&](work::Core& core) {
-          const auto [begin, end] = core.share(strip.end - strip.begin);
-          blur_rows<P>(view, result, strip.begin + begin, strip.begin + end, tables.blur_kernel);
-        });
-        const int pixels = (strip.end - strip.begin) * width;
-        under_way[k] = machine.start_copy_out(
-            blurred_in_l2.pixels.subspan(strip.begin * width, pixels), result.pixels);
-      });
-  const int last = plan.count() - 1;
-  if (last >= 1) machine.wait(under_way[static_cast<std::size_t>((last - 1) % 2)]);
-  machine.wait(under_way[static_cast<std::size_t>(last % 2)]);
+  const int width = image_in_l2.width, height = image_in_l2.height;
+  work::TilesOut<P, typename P::Byte> results(machine, "blurred strip", rows * width);
+  for_each_strip<P>(machine, image_in_l2, work::TilePlan(0, height, rows, kBlurRadius, height),
+                    [&](int, const work::Tile& strip, ConstImageView<P> view) {
+                      steps.blur(view, {results.next(machine), width, height, strip.begin},
+                                 {strip.begin, strip.end});
+                      results.send(machine, blurred_in_l2.pixels.subspan(strip.begin * width,
+                                                                         strip.size() * width));
+                    });
+  results.finish(machine);
+}
+
+/// Describes the features of every strip. Descriptors whose place is in L2 pass through tiles.
+template <class P, class FeaturesOf>
+void describe_in_strips(work::Machine& machine, ConstImageView<P> blurred_in_l2,
+                        const StripSteps<P>& steps, const work::TilePlan& plan, int most_features,
+                        const FeaturesOf& features_of, FeatureList<P>& out) {
+  const work::Arena::Frame memory(machine.local());
+  const auto words_of = [&](work::Share features) {
+    return out.descriptors.subspan(kDescriptorWords * features.begin,
+                                   kDescriptorWords * (features.end - features.begin));
+  };
+  if (!out.descriptors_in_l2)
+    return for_each_strip<P>(machine, blurred_in_l2, plan,
+                             [&](int i, const work::Tile&, ConstImageView<P> view) {
+                               const work::Share features = features_of(i);
+                               steps.describe(view, features, out, words_of(features));
+                             });
+  work::TilesOut<P, typename P::U32> results(machine, "descriptors of a strip",
+                                             kDescriptorWords * most_features);
+  for_each_strip<P>(machine, blurred_in_l2, plan,
+                    [&](int i, const work::Tile&, ConstImageView<P> view) {
+                      const work::Share features = features_of(i);
+                      if (features.begin == features.end) return;
+                      steps.describe(view, features, out, results.next(machine));
+                      results.send(machine, words_of(features));
+                    });
+  results.finish(machine);
 }
 
 }  // namespace
 
 template <class P>
+void run_strip_steps(work::Machine& machine, ImageView<P> image_in_l2, ImageView<P> blurred_in_l2,
+                     const ExtractorOptions& options, const StripSteps<P>& steps,
+                     FeatureList<P>& out) {
+  using I = typename P::I32;
+  const int width = image_in_l2.width, height = image_in_l2.height;
+  const int rows_of_cells = options.cells_along(height);
+  const int columns = options.cells_along(width);
+  work::Arena& memory = machine.local();
+  const work::Arena::Frame frame(memory);
+  // Element s: the number of features in the strips before s.
+  const auto until =
+      memory.alloc<typename P::template Span<I>>("features until strip", rows_of_cells + 1);
+  const int cell_rows = cell_rows_per_strip(options, width, height, out.descriptors_in_l2, memory);
+  const auto strips = [&](int reach) {
+    return work::TilePlan(options.border, height - options.border, cell_rows * options.cell, reach,
+                          height);
+  };
+  const auto features_of = [&](int strip) {
+    return work::Share{work::value(I(until[strip])), work::value(I(until[strip + 1]))};
+  };
+  out.count = 0;
+  until[0] = I(0);
+  for_each_strip<P>(machine, image_in_l2, strips(kHarrisReach),
+                    [&](int i, const work::Tile&, ConstImageView<P> view) {
+                      const int begin = i * cell_rows;
+                      const int end = std::min(begin + cell_rows, rows_of_cells);
+                      steps.detect(view, {begin * columns, end * columns}, out);
+                      until[i + 1] = I(out.count);
+                    });
+  blur_in_strips<P>(machine, image_in_l2, blurred_in_l2, steps, cell_rows * options.cell);
+  describe_in_strips<P>(machine, blurred_in_l2, steps, strips(kDescriptorReach),
+                        cell_rows * columns * options.per_cell, features_of, out);
+  // Last, because descriptors are of whole pixels.
+  if (options.subpixel_steps > 1)
+    for_each_strip<P>(machine, image_in_l2, strips(kHarrisReach),
+                      [&](int i, const work::Tile&, ConstImageView<P> view) {
+                        refine_keypoints<P>(machine, view, options, features_of(i), out);
+                      });
+}
+
+template <class P>
 void extract_features_in_strips(work::Machine& machine, ImageView<P> image_in_l2,
                                 ImageView<P> blurred_in_l2, const ExtractorOptions& options,
                                 FeatureList<P>& out) {
-  using I = typename P::I32;
-  using Table = typename P::template Span<I>;
   options.validate();
-  const int width = image_in_l2.width, height = image_in_l2.height;
-  check(out.capacity >= options.max_features(width, height),
+  check(out.capacity >= options.max_features(image_in_l2.width, image_in_l2.height),
         "the feature list has room for every feature of the image");
   check_equal(blurred_in_l2.pixels.size(), image_in_l2.pixels.size(), "pixels of the blurred copy");
-  work::Arena& memory = machine.local();
-  const work::Arena::Frame frame(memory);
-  const int rows_of_cells = options.cells_along(height);
-  const int columns = options.cells_along(width);
-  ExtractionTables<P> tables(memory, machine.cores());
-  // Element s: the number of features in the strips before s.
-  const Table until = memory.alloc<Table>("features until strip", rows_of_cells + 1);
-  load_tables<P>(machine, width, tables);
-  out.count = 0;
-
+  const work::Arena::Frame frame(machine.local());
+  ExtractionTables<P> tables(machine.local(), machine.cores());
+  load_tables<P>(machine, image_in_l2.width, tables);
   with_pattern<P>(machine, options, [&](auto pattern) {
-    const int cell_rows = cell_rows_per_strip(options, width, height, memory);
-    const int rows = cell_rows * options.cell;
-    const auto strips = [&](int reach) {
-      return StripPlan(options.border, height - options.border, rows, reach, height);
-    };
-    const auto features_of = [&](int strip) {
-      return work::Share{work::value(I(until[strip])), work::value(I(until[strip + 1]))};
-    };
-    until[0] = I(0);
-    for_each_strip<P>(
-        machine, image_in_l2, strips(kHarrisReach),
-        [&](int i, const Strip&, ConstImageView<P> view) {
-          const int begin = i * cell_rows;
-          const int end = std::min(begin + cell_rows, rows_of_cells);
-          detect_all<P>(machine, view, tables, options, {begin * columns, end * columns}, out);
-          until[i + 1] = I(out.count);
-        });
-    blur_in_strips<P>(machine, image_in_l2, blurred_in_l2, tables, rows);
-    for_each_strip<P>(machine, blurred_in_l2, strips(kDescriptorReach),
-                      [&](int i, const Strip&, ConstImageView<P> view) {
-                        describe_all<P>(machine, view, tables, pattern, features_of(i), out);
-                      });
-    // Last, because descriptors are of whole pixels.
-    if (options.subpixel_steps > 1)
-      for_each_strip<P>(machine, image_in_l2, strips(kHarrisReach),
-                        [&](int i, const Strip&, ConstImageView<P> view) {
-                          refine_keypoints<P>(machine, view, options, features_of(i), out);
-                        });
+    const StripSteps<P> steps{
+        [&](ConstImageView<P> view, work::Share cells, FeatureList<P>& to) {
+          detect_all<P>(machine, view, tables, options, cells, to);
+        },
+        [&](ConstImageView<P> view, ImageView<P> result, work::Share rows) {
+          machine.fork("blur", [&](work::Core& core) {
+            const auto [begin, end] = core.share(rows.end - rows.begin);
+            blur_rows<P>(view, result, rows.begin + begin, rows.begin + end, tables.blur_kernel);
+          });
+        },
+        [&](ConstImageView<P> view, work::Share features, const FeatureList<P>& list,
+            typename P::template Span<typename P::U32> words) {
+          describe_all<P>(machine, view, tables, pattern, features, list, words);
+        }};
+    run_strip_steps<P>(machine, image_in_l2, blurred_in_l2, options, steps, out);
   });
 }
 
-template void extract_features_in_strips<work::Native>(work::Machine&, ImageView<work::Native>,
-                                                       ImageView<work::Native>,
-                                                       const ExtractorOptions&,
-                                                       FeatureList<work::Native>&);
-template void extract_features_in_strips<work::Counting>(work::Machine&, ImageView<work::Counting>,
-                                                         ImageView<work::Counting>,
-                                                         const ExtractorOptions&,
-                                                         FeatureList<work::Counting>&);
+#define LEVIOSIM_INSTANTIATE(P)                                                                  \
+  template void run_strip_steps(work::Machine&, ImageView<P>, ImageView<P>,                      \
+                                const ExtractorOptions&, const StripSteps<P>&, FeatureList<P>&); \
+  template void extract_features_in_strips(work::Machine&, ImageView<P>, ImageView<P>,           \
+                                           const ExtractorOptions&, FeatureList<P>&);
+LEVIOSIM_INSTANTIATE(work::Native)
+LEVIOSIM_INSTANTIATE(work::Counting)
+#undef LEVIOSIM_INSTANTIATE
 
 }  // namespace leviosim::vio

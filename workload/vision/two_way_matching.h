@@ -10,6 +10,7 @@
 #pragma once
 
 #include "sim/base/check.h"
+#include "sim/work/tiles.h"
 #include "workload/math/compilers.h"
 #include "workload/vision/matcher.h"
 #include "workload/vision/slices.h"
@@ -39,43 +40,60 @@ struct Nearest {
   typename P::I32 reference, distance;
 };
 
-/// The reference descriptor nearest to `held`, if one is closer than `limit`; else the distance is
-/// `limit`.
+/// Which of the reference descriptors are there, and what is done with what they come to.
+template <class P>
+struct ReferenceTile {
+  DescriptorWords<P> words;
+  int count;
+  int first = 0;       ///< number of the first of them
+  bool begins = true;  ///< none was there before
+  bool ends = true;    ///< none will follow
+};
+
+/// The reference descriptor nearest to `held`, if one is closer than `nearest`; else that.
 template <class P, class Comparison>
 LEVIOSIM_HOST_INLINE Nearest<P> find_nearest(const HeldDescriptor<P>& held,
-                                             DescriptorWords<P> reference, int count,
-                                             typename P::I32 limit) {
+                                             const ReferenceTile<P>& reference,
+                                             Nearest<P> nearest) {
   using I = typename P::I32;
-  Nearest<P> nearest = {0, limit};
-  for (int r : P::range(0, count)) {
-    const I distance = Comparison::template distance<P>(held, reference, r);
-    if (work::unlikely(distance < nearest.distance)) nearest = {r, distance};
+  for (int r : P::range(0, reference.count)) {
+    const I distance = Comparison::template distance<P>(held, reference.words, r);
+    if (work::unlikely(distance < nearest.distance)) nearest = {r + reference.first, distance};
   }
   return nearest;
 }
 
 /// Appends the matches of the current features of `share` to `list`, from share.begin on.
+/// @param current  descriptors, of which the first is that of feature `first`
+/// @param nearest_so_far  of each feature, in the references that were there before
 /// @return how many there are
 template <class P, class Comparison>
-LEVIOSIM_HOST_CLONES typename P::I32 search(DescriptorWords<P> current, work::Share share,
-                                            DescriptorWords<P> reference, int reference_count,
+LEVIOSIM_HOST_CLONES typename P::I32 search(DescriptorWords<P> current, int first,
+                                            work::Share share, const ReferenceTile<P>& reference,
                                             const MatcherOptions& options,
+                                            const MatchList<P>& nearest_so_far,
                                             const MatchList<P>& list) {
   using I = typename P::I32;
+  using U16 = typename P::U16;
   const typename P::Function function(Comparison::kFunction);
   const I limit = options.max_distance;
   const typename P::OffloadRegion kernel(work::OffloadKind::Hamming,
-                                         (share.end - share.begin) * reference_count);
-  I next = share.begin;
+                                         (share.end - share.begin) * reference.count);
+  I next = first + share.begin;
   for (int i : P::range(share.begin, share.end)) {
-    const Nearest<P> nearest = find_nearest<P, Comparison>(hold_descriptor<P>(current, i),
-                                                           reference, reference_count, limit);
-    if (nearest.distance < limit) {
-      put<P>(list, next, {I(i), nearest.reference, nearest.distance});
+    Nearest<P> nearest = {0, limit};
+    if (!reference.begins)
+      nearest = {nearest_so_far.reference[first + i], nearest_so_far.distance[first + i]};
+    nearest = find_nearest<P, Comparison>(hold_descriptor<P>(current, i), reference, nearest);
+    if (!reference.ends) {
+      nearest_so_far.reference[first + i] = work::narrow<U16>(nearest.reference);
+      nearest_so_far.distance[first + i] = work::narrow<U16>(nearest.distance);
+    } else if (nearest.distance < limit) {
+      put<P>(list, next, {I(first + i), nearest.reference, nearest.distance});
       next += I(1);
     }
   }
-  return next - I(share.begin);
+  return next - I(first + share.begin);
 }
 
 /// Whether another match claims the reference feature of match `i` at an equal or better distance.
@@ -106,32 +124,70 @@ typename P::I32 keep_uncontested(const MatchList<P>& one_way, work::Share share,
   return next - I(share.begin);
 }
 
-/// Forks a team whose cores append to slices of `list`, and closes the gaps.
+/// Forks a team whose cores append to slices of `list` for items from `first` on, and closes the
+/// gaps behind the matches that it has.
 template <class P, class Append>
-void append_in_parallel(work::Machine& machine, std::string_view name, int items,
+void append_in_parallel(work::Machine& machine, std::string_view name, int first, int items,
                         typename P::template Span<typename P::I32> kept, MatchList<P>& list,
                         Append&& append) {
   machine.fork(name, [&](work::Core& core) { kept[core.id] = append(core.share(items)); });
-  list.count = compact_slices<P>(
-      items, 1, kept, [&](int to, int from) { put<P>(list, to, match_at<P>(list, from)); });
+  const int before = list.count;
+  const auto move = [&](int to, int from) {
+    put<P>(list, before + to, match_at<P>(list, first + from));
+  };
+  list.count += compact_slices<P>(items, 1, kept, move, first > before);
 }
 
-/// match_two_way() (matcher.h) with `Comparison`.
+/// Calls visit(words, first, count) for all descriptors, or for one tile of them after the other.
+template <class P, class Visit>
+void for_descriptors(work::Machine& machine, const DescriptorSource<P>& from, Bytes room,
+                     Visit&& visit) {
+  if (!from.in_l2) return visit(from.words, 0, from.count);
+  const work::PassingBlock<P, typename P::U32> block{from.name, from.words, kDescriptorWords};
+  const work::TilePlan plan = work::plan_tiles(machine.local(), from.name, from.count, block.item(),
+                                               machine.local().free() - room);
+  work::for_each_tile<P>(
+      machine, plan,
+      [&](int, const work::Tile& tile, DescriptorWords<P> words) {
+        visit(words, tile.begin, tile.size());
+      },
+      block);
+}
+
+/// match_sources() (matcher.h) with `Comparison`.
 template <class P, class Comparison>
-void match(work::Machine& machine, DescriptorWords<P> current, int current_count,
-           DescriptorWords<P> reference, int reference_count, const MatcherOptions& options,
-           MatchList<P>& out) {
-  check(out.capacity >= current_count, "the match list has room for every current feature");
+void match(work::Machine& machine, const DescriptorSource<P>& current,
+           const DescriptorSource<P>& reference, const MatcherOptions& options, MatchList<P>& out) {
+  check(out.capacity >= current.count, "the match list has room for every current feature");
   work::Arena& memory = machine.local();
   const work::Arena::Frame frame(memory);
   MatchList<P> one_way = alloc_matches<P>(memory, out.capacity, "one-way matches");
   const auto kept =
       memory.alloc<typename P::template Span<typename P::I32>>("matches per core", machine.cores());
-  append_in_parallel<P>(machine, "search", current_count, kept, one_way, [&](work::Share share) {
-    return search<P, Comparison>(current, share, reference, reference_count, options, one_way);
+  // Where both pass in tiles, each has half of the room.
+  const Bytes all = memory.free();
+  const Bytes part = current.in_l2 && reference.in_l2 ? Bytes(all.count() / 2) : all;
+  const auto search_in = [&](DescriptorWords<P> words, int first, int count,
+                             const ReferenceTile<P>& tile) {
+    const auto in_share = [&](work::Share share) {
+      return search<P, Comparison>(words, first, share, tile, options, out, one_way);
+    };
+    if (tile.ends)
+      append_in_parallel<P>(machine, "search", first, count, kept, one_way, in_share);
+    else
+      machine.fork("search", [&](work::Core& core) { in_share(core.share(count)); });
+  };
+  for_descriptors<P>(machine, current, part, [&](DescriptorWords<P> words, int first, int count) {
+    for_descriptors<P>(
+        machine, reference, part, [&](DescriptorWords<P> of, int first_of, int count_of) {
+          search_in(
+              words, first, count,
+              {of, count_of, first_of, first_of == 0, first_of + count_of == reference.count});
+        });
   });
+  out.count = 0;
   append_in_parallel<P>(
-      machine, "two-way filter", one_way.count, kept, out,
+      machine, "two-way filter", 0, one_way.count, kept, out,
       [&](work::Share share) { return keep_uncontested<P>(one_way, share, out); });
 }
 

@@ -57,7 +57,7 @@ Features extract_shared_with_learned_pairs() {
     const ImageView<N> blurred{{pixels.data(), 160 * 120}, 160, 120};
     vio::blur_rows<N>(image, blurred, 0, 120, tables.blur_kernel);
     vio::describe_all<N>(machine, blurred, tables, in_l2<N>(levio::kLearnedPattern<N>),
-                         {0, list.count}, list);
+                         {0, list.count}, list, list.descriptors);
   };
   work::Machine machine = vision_test::make_machine<N>(8);
   return vision_test::extract_by<N>(extract, machine, picture(), {});

@@ -28,22 +28,6 @@ Features extract_in_strips(work::Machine& machine, const cv::Mat& image,
   return plain<P>(list);
 }
 
-TEST(StripPlan, CoversAllRowsOnceAndReadsThoseAround) {
-  for (const int rows : {1, 7, 16, 100, 500}) {
-    const StripPlan plan(16, 104, rows, 4, 106);
-    int next = 16;
-    for (int i = 0; i < plan.count(); ++i) {
-      const Strip strip = plan[i];
-      EXPECT_EQ(strip.begin, next);
-      EXPECT_EQ(strip.top, strip.begin - 4);
-      EXPECT_EQ(strip.bottom, std::min(106, strip.end + 4));
-      EXPECT_LE(strip.bottom - strip.top, plan.most_rows());
-      next = strip.end;
-    }
-    EXPECT_EQ(next, 104);
-  }
-}
-
 struct Case {
   int width, height, cell, cores, subpixel;
   std::int64_t memory;

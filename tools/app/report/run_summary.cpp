@@ -108,6 +108,30 @@ std::string memory_line(const RunResult& run) {
   return text + fmt::format(" L2 {}", of_memory(l2, run.l2_size));
 }
 
+/// What has no room in L1 and passes through it in tiles; empty if all has.
+std::string tiles_line(const RunResult& run) {
+  std::vector<std::string> stages;
+  for (auto first = run.passages.begin(); first != run.passages.end();) {
+    const auto last = std::find_if(first, run.passages.end(),
+                                   [&](const work::Passage& p) { return p.stage != first->stage; });
+    Bytes bytes;
+    std::int64_t tiles = 0;
+    for (auto passage = first; passage != last; ++passage) {
+      bytes += passage->bytes;
+      tiles = std::max(tiles, passage->tiles);
+    }
+    const auto frames = static_cast<double>(std::max<std::size_t>(1, run.frames.size()));
+    const auto blocks = last - first;
+    stages.push_back(fmt::format("{} ({} block{}, {:.1f} tiles and {:.1f} kB a frame)",
+                                 printable(first->stage), blocks, blocks == 1 ? "" : "s",
+                                 static_cast<double>(tiles) / frames,
+                                 static_cast<double>(bytes.count()) * 1e-3 / frames));
+    first = last;
+  }
+  if (stages.empty()) return {};
+  return fmt::format("in tiles through L1: {}", fmt::join(stages, kComma));
+}
+
 /// Empty where the platform has no energy figures.
 std::string energy_line(const RunResult& run) {
   const std::optional<RunEnergy> energy = energy_of(run);
@@ -232,7 +256,7 @@ std::string run_summary(const std::string& heading, const RunResult& run, int wi
   std::vector<std::string> below;
   if (run.timed)
     below = {fmt::format("{}{}{}", frame_time_line(run), kComma, row_figures(run)),
-             latency_line(run), memory_line(run), energy_line(run)};
+             latency_line(run), memory_line(run), tiles_line(run), energy_line(run)};
   else
     below = {frame_summary(run).substr(0, frame_summary(run).find('\n')), row_figures(run)};
   for (std::string& line : trajectory_lines(run)) below.push_back(std::move(line));

@@ -89,6 +89,7 @@ struct RunResult {
   std::vector<FrameResult> frames;     ///< that the front end processed
   std::optional<CameraRecord> camera;  ///< of a closed loop
   std::vector<L2Row> l2;
+  std::vector<work::Passage> passages;  ///< through L1 in tiles, where the work was computed
   std::int64_t optimiser_published = 0;  ///< results that reached the front end
   std::int64_t optimiser_late = 0;       ///< frames at whose start the controller was still busy
   std::vector<traces::StampedPose> trajectory;

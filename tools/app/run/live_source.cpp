@@ -170,6 +170,7 @@ void LiveSource::describe(RunResult& result) const {
                                     {"pose graph", odometry_->pose_graph_memory()},
                                     {"loop closure", odometry_->loop_memory()}})
     if (arena.used() > Bytes(0)) result.l2.push_back({name, arena.used(), arena.live()});
+  result.passages = cluster_.passages();
   if (evaluate_ && !feed_.data().ground_truth.empty() && result.trajectory.size() >= kFewestPoses &&
       why_incomparable(result).empty())
     evaluate(result);

@@ -6,6 +6,7 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/work/arena.h"
 
 namespace leviosim::tools {
 namespace {
@@ -75,12 +76,13 @@ const work::Job& TraceSource::optimise() {
 void TraceSource::check_fits(const work::Job& job, const char* memory, Bytes size) const {
   for (const work::StageRun& stage : job.stages)
     if (stage.memory.parallel > size)
-      throw InputError(fmt::format(
-          "{}: frame {}, {}: the recorded work occupies {} bytes of {}, which has {}: {} bytes are "
-          "missing; a larger {} has them",
-          trace_.name(), number_, stage.stage, stage.memory.parallel.count(), memory, size.count(),
-          (stage.memory.parallel - size).count(),
-          std::string_view(memory) == "L2" ? "l2.size" : "cluster.l1.size"));
+      throw work::MemoryOverflow(
+          fmt::format("{}: frame {}, {}: the recorded work occupies {} bytes of {}, which has {}: "
+                      "{} bytes are missing; a larger {} has them",
+                      trace_.name(), number_, stage.stage, stage.memory.parallel.count(), memory,
+                      size.count(), (stage.memory.parallel - size).count(),
+                      std::string_view(memory) == "L2" ? "l2.size" : "cluster.l1.size"),
+          memory);
 }
 
 std::vector<StageResult> TraceSource::empty_stages() const {

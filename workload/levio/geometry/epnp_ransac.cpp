@@ -100,6 +100,18 @@ void keep_best(const EpnpBatch<P>& batch, int size, const LandmarkMatches<P>& ma
 
 }  // namespace
 
+namespace {
+
+/// What a hypothesis takes in a batch, and the scratch of the core that solves it.
+constexpr Bytes kEpnpHypothesis =
+    Bytes(2 * kEpnpSample + 4 * (5 * kEpnpSample + 16 + 1)) + kEpnpScratch;
+
+}  // namespace
+
+Bytes epnp_memory(int matches, int cores) {
+  return Bytes(2LL * matches + 4LL * 16) + kEpnpHypothesis * cores;
+}
+
 template <class P>
 EpnpResult<P> estimate_pose_epnp(work::Machine& machine, const LandmarkMatches<P>& matches,
                                  const CameraConstants<P>& camera, ShiftRegister<P>& random,
@@ -110,7 +122,7 @@ EpnpResult<P> estimate_pose_epnp(work::Machine& machine, const LandmarkMatches<P
   work::Arena& local = machine.local();
   const work::Arena::Frame frame(local);
   const Indices numbers = local.alloc<Indices>("match numbers", matches.n);
-  const Batches batches(options.iterations, options.batch, machine);
+  const Batches batches(options.iterations, options.batch, machine, kEpnpHypothesis);
   const EpnpBatch<P> batch(local, batches.largest());
   const MatrixView<P> pose = alloc_matrix<P>(local, "best pose", 4, 4);
   number_consecutively<P>(numbers);
@@ -121,11 +133,14 @@ EpnpResult<P> estimate_pose_epnp(work::Machine& machine, const LandmarkMatches<P
       draw_sample<P>(random, numbers, kEpnpSample, batch.sample(h));
       copy_sample<P>(matches, batch, h);
     }
-    machine.fork("solve EPnP", [&](work::Core& core) {
-      const auto [begin, end] = core.share(size);
-      for (int h : P::range(begin, end))
-        batch.errors[h] = solve_epnp<P>(batch.matches(h), camera, batch.pose(h), core.scratch);
-    });
+    machine.fork(
+        "solve EPnP",
+        [&](work::Core& core) {
+          const auto [begin, end] = core.share(size);
+          for (int h : P::range(begin, end))
+            batch.errors[h] = solve_epnp<P>(batch.matches(h), camera, batch.pose(h), core.scratch);
+        },
+        kEpnpScratch);
     keep_best<P>(batch, size, matches, camera, options.inlier_px, pose, best);
   }
   if (!best.found) return {};

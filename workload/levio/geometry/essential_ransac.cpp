@@ -75,6 +75,19 @@ void keep_best(const EssentialBatch<P>& batch, int size, MatrixView<P> essential
 
 }  // namespace
 
+namespace {
+
+/// What a hypothesis takes in a batch, and the scratch of the core that solves it.
+Bytes size_of_hypothesis(int matches) {
+  return Bytes(2LL * kEssentialSample + 4LL * (9 + 2) + matches) + kEssentialScratch;
+}
+
+}  // namespace
+
+Bytes essential_memory(int matches, int cores) {
+  return Bytes(2LL * matches) + size_of_hypothesis(matches) * cores;
+}
+
 template <class P>
 EssentialResult<P> estimate_essential(work::Machine& machine, const TwoViewMatches<P>& matches,
                                       typename P::F32 threshold, ShiftRegister<P>& random,
@@ -88,7 +101,7 @@ EssentialResult<P> estimate_essential(work::Machine& machine, const TwoViewMatch
   work::Arena& local = machine.local();
   const work::Arena::Frame frame(local);
   const Indices numbers = local.alloc<Indices>("8-point indices", matches.n);
-  const Batches batches(options.iterations, options.batch, machine);
+  const Batches batches(options.iterations, options.batch, machine, size_of_hypothesis(matches.n));
   const EssentialBatch<P> batch(local, batches.largest(), matches.n);
   number_consecutively<P>(numbers);
   BestEssential<P> best;
@@ -96,11 +109,14 @@ EssentialResult<P> estimate_essential(work::Machine& machine, const TwoViewMatch
     const int size = batches.size(i);
     for (int h : P::range(0, size))
       draw_sample<P>(random, numbers, kEssentialSample, batch.sample(h));
-    machine.fork_aligned_on_one_core("8-point hypotheses", [&](work::Core& core) {
-      const auto [begin, end] = core.share(size);
-      for (int h : P::range(begin, end))
-        essential_from_sample<P>(matches, batch.sample(h), batch.essential(h), core.scratch);
-    });
+    machine.fork_aligned_on_one_core(
+        "8-point hypotheses",
+        [&](work::Core& core) {
+          const auto [begin, end] = core.share(size);
+          for (int h : P::range(begin, end))
+            essential_from_sample<P>(matches, batch.sample(h), batch.essential(h), core.scratch);
+        },
+        kEssentialScratch);
     machine.fork_aligned_on_one_core("8-point scoring", [&](work::Core& core) {
       const auto [begin, end] = core.share(size);
       for (int h : P::range(begin, end))

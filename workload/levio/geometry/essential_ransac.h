@@ -39,6 +39,13 @@ struct EssentialResult {
   int inliers = 0;
 };
 
+/// Local memory that each core takes for a hypothesis.
+inline constexpr Bytes kEssentialScratch{668};
+
+/// Local memory of estimate_essential() with one hypothesis for each core.
+/// @param matches  the most that there can be
+Bytes essential_memory(int matches, int cores);
+
 /// Works inside a stage of `machine`.
 /// @param threshold    of an inlier's squared Sampson error, in normalised coordinates
 /// @param essential    3×3, the result: x_bᵀ E x_a = 0

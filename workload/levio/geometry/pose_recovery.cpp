@@ -71,17 +71,20 @@ void triangulate_all(work::Machine& machine, MatrixView<P> T_a, MatrixView<P> T_
                      const PixelMatches<P>& matches, const CameraConstants<P>& camera,
                      MatrixView<P> points) {
   using F = typename P::F32;
-  machine.fork_aligned_on_one_core("recover pose", [&](work::Core& core) {
-    const auto [begin, end] = slice_of(matches.n, core);
-    for (int i : P::range(begin, end)) {
-      const Vec2<P> a{F(matches.a[2 * i]), F(matches.a[2 * i + 1])};
-      const Vec2<P> b{F(matches.b[2 * i]), F(matches.b[2 * i + 1])};
-      const Vec3<P> x = triangulate<P>(T_a, T_b, a, b, camera, core.scratch);
-      points(i, 0) = x.x;
-      points(i, 1) = x.y;
-      points(i, 2) = x.z;
-    }
-  });
+  machine.fork_aligned_on_one_core(
+      "recover pose",
+      [&](work::Core& core) {
+        const auto [begin, end] = slice_of(matches.n, core);
+        for (int i : P::range(begin, end)) {
+          const Vec2<P> a{F(matches.a[2 * i]), F(matches.a[2 * i + 1])};
+          const Vec2<P> b{F(matches.b[2 * i]), F(matches.b[2 * i + 1])};
+          const Vec3<P> x = triangulate<P>(T_a, T_b, a, b, camera, core.scratch);
+          points(i, 0) = x.x;
+          points(i, 1) = x.y;
+          points(i, 2) = x.z;
+        }
+      },
+      kTriangulationScratch);
 }
 
 /// How many of the points lie in front of both cameras; the master's work.

@@ -8,6 +8,7 @@
 
 #include "sim/work/machine.h"
 #include "workload/levio/geometry/camera_constants.h"
+#include "workload/levio/geometry/two_view_point.h"
 #include "workload/math/matrix.h"
 
 namespace leviosim::vio::levio {
@@ -25,6 +26,11 @@ struct RecoveredPose {
   Pose<P> T_b_a{};   ///< |t| = 1
   int in_front = 0;  ///< matches in front of both cameras
 };
+
+/// Local memory of recover_pose(), all cores at work.
+inline Bytes recovery_memory(int matches, int cores) {
+  return Bytes(4LL * (4 * 16 + 16) + 4LL * 3 * matches) + kTriangulationScratch * cores;
+}
 
 /// Works inside a stage of `machine`.
 /// @param essential  3×3, x_bᵀ E x_a = 0

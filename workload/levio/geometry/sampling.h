@@ -73,16 +73,25 @@ void number_consecutively(Indices indices) {
 class Batches {
  public:
   /// @param hypotheses  of all batches
-  /// @param wanted      of a batch; 0: one for each core, as the released program has it
-  Batches(int hypotheses, int wanted, const work::Machine& machine)
+  /// @param wanted      of a batch; 0: one for each core, as the released program has it, or for as
+  ///                    many as have room
+  /// @param each        local memory that a hypothesis takes, with the scratch of its core
+  Batches(int hypotheses, int wanted, const work::Machine& machine, Bytes each)
       : hypotheses_(hypotheses),
-        largest_(std::min(hypotheses, wanted > 0 ? wanted : machine.cores())) {}
+        largest_(std::min(hypotheses, wanted > 0 ? wanted : cores_with(machine, each))) {}
 
   int largest() const { return largest_; }
   int count() const { return (hypotheses_ + largest_ - 1) / largest_; }
   int size(int batch) const { return std::min(largest_, hypotheses_ - batch * largest_); }
 
  private:
+  static int cores_with(const work::Machine& machine, Bytes each) {
+    // What is lent begins at words, and the best hypothesis takes some more.
+    constexpr Bytes kBest(80), kPadding(4);
+    const std::int64_t fit = (machine.local().free() - kBest).count() / (each + kPadding).count();
+    return static_cast<int>(std::clamp<std::int64_t>(fit, 1, machine.cores()));
+  }
+
   int hypotheses_;
   int largest_;
 };

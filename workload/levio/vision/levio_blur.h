@@ -12,11 +12,13 @@ typename P::I32 blur_pixel_at_edge(ConstImageView<P> image, int x, int y) {
   using I = typename P::I32;
   const typename P::Function function("levio_blur_at_edge");
   const I last_column = image.width - 1;
-  const I last_row = image.height - 1;
+  // Rows are counted from the first one that is there.
+  const I first_row = -image.top;
+  const I last_row = image.height - 1 - image.top;
   constexpr int kBinomial[kBlurSize] = {1, 4, 6, 4, 1};
   I sum = 0;
   for (int i = 0; i < kBlurSize; ++i) {
-    const I v = work::max(I(0), work::min(last_row, I(y + i - kBlurRadius)));
+    const I v = work::max(first_row, work::min(last_row, I(y - image.top + i - kBlurRadius)));
     const I row = v * I(image.width);
     for (int j = 0; j < kBlurSize; ++j) {
       const I u = work::max(I(0), work::min(last_column, I(x + j - kBlurRadius)));
@@ -39,7 +41,7 @@ typename P::I32 blur_pixel_inside(typename P::template Span<const typename P::By
   return sum >> kBlurShift;
 }
 
-/// Blurs the rows [begin, end) of `image`, which is whole, into `blurred`.
+/// Blurs the rows [begin, end) of `image`, of which those around them are there, into `blurred`.
 template <class P>
 void blur_rows(ConstImageView<P> image, ImageView<P> blurred, int begin, int end) {
   using Byte = typename P::Byte;
@@ -48,9 +50,9 @@ void blur_rows(ConstImageView<P> image, ImageView<P> blurred, int begin, int end
   const auto inside = [](int at, int size) { return at >= kBlurRadius && at < size - kBlurRadius; };
   for (int y : P::range(begin, end))
     for (int x : P::range(0, width)) {
-      const int corner = (y - kBlurRadius) * width + x - kBlurRadius;
+      const int corner = (y - image.top - kBlurRadius) * width + x - kBlurRadius;
       const bool whole = inside(y, image.height) && inside(x, width);
-      blurred.pixels[y * width + x] =
+      blurred.pixels[(y - blurred.top) * width + x] =
           work::narrow<Byte>(whole ? blur_pixel_inside<P>(image.pixels, width, corner)
                                    : blur_pixel_at_edge<P>(image, x, y));
     }

@@ -1,10 +1,8 @@
 // Feature extraction with the released program's work (PARAMETERS.md#feature-extraction): the same
 // three forks as workload/vision/extractor.h, and features at the same places. Their descriptors
 // differ from those in the pattern of pairs (learned_pairs.h), and in what the disc and the
-// rounding of the release change.
-//
-// Left out: images that do not fit in local memory; the shared extraction has strips for them, with
-// its own pattern.
+// rounding of the release change. Images that do not fit in local memory pass through it in strips,
+// as those of the shared extraction do (workload/vision/strip_extractor.h).
 #pragma once
 
 #include "sim/work/machine.h"
@@ -22,5 +20,13 @@ enum class DescriptorKind {
 template <class P>
 void extract_features(work::Machine& machine, ImageView<P> image_in_l2,
                       const ExtractorOptions& options, DescriptorKind kind, FeatureList<P>& out);
+
+/// The same features of an image that does not fit.
+/// @param blurred_in_l2  room for its blurred copy, of the same size
+/// @throws InputError if not even one row of cells fits in local memory
+template <class P>
+void extract_features_in_strips(work::Machine& machine, ImageView<P> image_in_l2,
+                                ImageView<P> blurred_in_l2, const ExtractorOptions& options,
+                                DescriptorKind kind, FeatureList<P>& out);
 
 }  // namespace leviosim::vio::levio

@@ -10,10 +10,19 @@
 
 namespace leviosim::vio::levio {
 
-/// As vio::match_two_way(), and with the same results.
+/// As vio::match_sources(), and with the same results.
+template <class P>
+void match_sources(work::Machine& machine, const DescriptorSource<P>& current,
+                   const DescriptorSource<P>& reference, const MatcherOptions& options,
+                   MatchList<P>& out);
+
+/// As vio::match_two_way().
 template <class P>
 void match_two_way(work::Machine& machine, DescriptorWords<P> current, int current_count,
                    DescriptorWords<P> reference, int reference_count, const MatcherOptions& options,
-                   MatchList<P>& out);
+                   MatchList<P>& out) {
+  levio::match_sources<P>(machine, DescriptorSource<P>{current, current_count},
+                          DescriptorSource<P>{reference, reference_count}, options, out);
+}
 
 }  // namespace leviosim::vio::levio

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
 #include "platform_models/loader/instruction_set.h"
 #include "platform_models/loader/parameter.h"
@@ -22,6 +23,7 @@
 #include "tools/app/result/energy_summary.h"
 #include "tools/app/run/replay.h"
 #include "tools/app/run/simulate.h"
+#include "traces/work_traces/work_frames.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
@@ -143,7 +145,6 @@ std::optional<Variant> with_accelerators_of(const std::string& name,
 
 constexpr const char* kWorkers = "platform.cluster.workers";
 constexpr const char* kEventUnit = "platform.cluster.max_workers";
-constexpr const char* kL1Size = "platform.cluster.l1.size";
 constexpr const char* kBase = "platform.isa.base";
 
 void raise(Variant& variant, const char* key, const std::string& value) {
@@ -269,7 +270,23 @@ void WhatIf::raise_event_unit(Variant& variant) {
     raise(variant, kEventUnit, workers->second);
 }
 
-ResolvedPoint WhatIf::resolved(const Variant& variant) {
+bool WhatIf::passes_in_tiles() {
+  if (passes_in_tiles_) return *passes_in_tiles_;
+  traces::WorkFrames reader(*inputs_.trace(trace_, {trace_}).work);
+  traces::WorkFrame frame;
+  const auto waits = [](const work::StageRun& stage) {
+    return std::any_of(stage.steps.begin(), stage.steps.end(), [](const work::Step& step) {
+      return std::holds_alternative<work::TransferWait>(step);
+    });
+  };
+  bool found = false;
+  while (!found && reader.next(frame))
+    found = std::any_of(frame.front_end.stages.begin(), frame.front_end.stages.end(), waits);
+  passes_in_tiles_ = found;
+  return found;
+}
+
+ResolvedPoint WhatIf::resolved(const Variant& variant, bool anew) {
   const std::lock_guard<std::mutex> lock(resolving_);
   SweepRow settings = variant.settings;
   settings["trace"] = trace_;
@@ -284,8 +301,11 @@ ResolvedPoint WhatIf::resolved(const Variant& variant) {
       overrides.push_back(name.substr(kChipSettings.size()) + '=' + value);
   const platform::ResolvedPlatform platform = chip.resolve(overrides);
   const int workers = platform.config.cluster.workers;
-  if (workers == trace.info().cores ||
-      (variant.settings.empty() && workers >= trace.info().cores)) {
+  const bool other_l1 =
+      platform.config.cluster.l1.size != plan_.reference->resolve({}).config.cluster.l1.size;
+  anew = anew || (other_l1 && !again_.empty() && passes_in_tiles());
+  if (!anew && (workers == trace.info().cores ||
+                (variant.settings.empty() && workers >= trace.info().cores))) {
     settings["cores"] = fmt::format("{}", trace.info().cores);
     return resolve(plan_, settings, inputs_, where);
   }
@@ -312,21 +332,6 @@ ResolvedPoint WhatIf::resolved(const Variant& variant) {
   return resolve(plan_, run, inputs_, where);
 }
 
-VariantResult WhatIf::with_larger_l1(const Variant& variant) {
-  constexpr std::int64_t kKiB = 1024;
-  constexpr std::int64_t kStep = 16 * kKiB;
-  const std::int64_t small = resolved(variant).request.platform.config.cluster.l1.size.count();
-  for (std::int64_t size = (small / kStep + 1) * kStep;; size += kStep) {
-    Variant larger = variant;
-    raise(larger, kL1Size, fmt::format("{}KiB", size / kKiB));
-    try {  // what does not fit fails within the first frames
-      return timed(larger, resolved(larger), known_);
-    } catch (const work::MemoryOverflow&) {
-      if (size >= 2 * small) throw;
-    }
-  }
-}
-
 std::vector<VariantResult> WhatIf::results(const std::vector<Variant>& variants,
                                            const RunnerOptions& options) {
   std::vector<Variant> all{{kAsItIs, {}}};
@@ -336,10 +341,9 @@ std::vector<VariantResult> WhatIf::results(const std::vector<Variant>& variants,
     try {
       return timed(variant, resolved(variant), known_);
     } catch (const work::MemoryOverflow& full) {
-      const bool has_more_cores =
-          variant.settings.count(kWorkers) > 0 && variant.settings.count(kL1Size) == 0;
-      if (!has_more_cores || full.memory() == "L2") throw;
-      return with_larger_l1(variant);
+      if (full.memory() == "L2" || again_.empty()) throw;
+      // Recorded work that does not fit passes in tiles where it is computed on this chip.
+      return timed(variant, resolved(variant, true), known_);
     }
   };
   run_all(all.size(), options, [&](std::size_t i) {

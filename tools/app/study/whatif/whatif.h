@@ -79,16 +79,17 @@ class WhatIf {
   void name_chip(Variant& variant);
   /// An event unit for as many cores as are asked for.
   void raise_event_unit(Variant& variant);
-  ResolvedPoint resolved(const Variant& variant);
-  /// More cores need more of L1: the same with the least that holds the work, in steps of 16 KiB.
-  /// @throws InputError if twice the size does not hold it either
-  VariantResult with_larger_l1(const Variant& variant);
+  /// @param anew  the work is computed again, for it is another on this chip
+  ResolvedPoint resolved(const Variant& variant, bool anew = false);
+  /// Whether the recorded work passes through L1 in tiles, so that another L1 makes it another.
+  bool passes_in_tiles();
 
   SweepInputs& inputs_;
   std::string trace_;
   SweepRow again_;
   SweepPlan plan_;
   KnownRuns known_;
+  std::optional<bool> passes_in_tiles_;
   std::mutex resolving_;  ///< inputs_ remembers what it has read
 };
 

@@ -1,0 +1,138 @@
+// Blocks that pass through local memory in tiles, against closed formulas.
+#include "sim/work/tiles.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "sim/chip/chip.h"
+#include "tests/sim/chip_test_config.h"
+
+namespace leviosim::work {
+namespace {
+
+using P = Counting;
+using Words = P::Span<P::U32>;
+
+TEST(TilePlan, CoversAllItemsOnceAndHasThoseAround) {
+  for (const int each : {1, 7, 16, 100, 500}) {
+    const TilePlan plan(16, 104, each, 4, 106);
+    int next = 16;
+    for (int i = 0; i < plan.count(); ++i) {
+      const Tile tile = plan[i];
+      EXPECT_EQ(tile.begin, next);
+      EXPECT_EQ(tile.first, tile.begin - 4);
+      EXPECT_EQ(tile.last, std::min(106, tile.end + 4));
+      EXPECT_LE(tile.items(), plan.most_items());
+      next = tile.end;
+    }
+    EXPECT_EQ(next, 104);
+  }
+}
+
+TEST(TilePlan, IsOfTheFewestTilesOfWhichTwoFit) {
+  const Arena arena("L1", Bytes(1000));
+  for (const int n : {1, 4, 5, 31, 100, 1000}) {
+    const TilePlan plan = plan_tiles(arena, "b", n, Bytes(32), Bytes(100));
+    EXPECT_LE(2 * 32 * plan.most_items(), 900) << n;
+    const int most = 900 / 2 / 32;
+    EXPECT_EQ(plan.count(), (n + most - 1) / most) << n;
+  }
+  EXPECT_EQ(plan_tiles(arena, "b", 0, Bytes(32)).count(), 0);
+}
+
+TEST(TilePlan, OfWhichNotOneItemFitsIsRefusedWithStageAndBlock) {
+  Arena arena("L1", Bytes(1000));
+  arena.set_user("matching");
+  try {
+    plan_tiles(arena, "descriptors", 5, Bytes(32), Bytes(950));
+    FAIL() << "accepted";
+  } catch (const MemoryOverflow& error) {
+    EXPECT_STREQ(error.what(),
+                 "matching: block 'descriptors' of 1014 bytes does not fit in L1: 0 of 1000 bytes "
+                 "are in use, 14 bytes are missing");
+  }
+}
+
+/// `n` words pass in tiles of `each` and come back with one added to each.
+struct Passed {
+  std::vector<P::U32> result;
+  Job job;
+  std::vector<Passage> passages;
+};
+
+Passed add_one_to_all(int n, int each, int work_per_word = 0) {
+  Machine machine({.cores = 1, .capacity = Bytes(64 * 1024), .record = true});
+  std::vector<P::U32> words(static_cast<std::size_t>(n));
+  std::iota(words.begin(), words.end(), 0u);
+  Passed passed{std::vector<P::U32>(words.size()), {}, {}};
+  {
+    const auto stage = machine.stage("s");
+    const Arena::Frame frame(machine.local());
+    TilesOut<P, P::U32> out(machine, "out", each);
+    for_each_tile<P>(
+        machine, TilePlan(0, n, each, 0, n),
+        [&](int, const Tile& tile, Words in) {
+          const Words to = out.next(machine);
+          for (int i : P::range(0, tile.size())) {
+            P::U32 word = in[i];
+            for ([[maybe_unused]] int k : P::range(0, work_per_word)) word = word ^ P::U32(0u);
+            to[i] = word + P::U32(1u);
+          }
+          out.send(machine, Words(passed.result.data() + tile.begin, tile.size()));
+        },
+        PassingBlock<P, P::U32>{"in", Words(words.data(), n)});
+    out.finish(machine);
+  }
+  passed.job = machine.take_job();
+  passed.passages = machine.passages();
+  return passed;
+}
+
+TEST(Tiles, GoThereAndBackAndEveryItemOnce) {
+  for (const int each : {1, 3, 8, 99, 100, 200}) {
+    const Passed passed = add_one_to_all(100, each);
+    for (std::size_t i = 0; i < passed.result.size(); ++i)
+      ASSERT_EQ(value(passed.result[i]), i + 1) << each;
+    Bytes in{0}, out{0};
+    for (const Step& step : passed.job.stages.at(0).steps)
+      if (const auto* transfer = std::get_if<Transfer>(&step))
+        (transfer->direction == Direction::L2ToL1 ? in : out) += transfer->bytes;
+    EXPECT_EQ(in, Bytes(400));
+    EXPECT_EQ(out, Bytes(400));
+    ASSERT_EQ(passed.passages.size(), 2u);
+    EXPECT_EQ(passed.passages[0].block, "in");
+    EXPECT_EQ(passed.passages[0].stage, "s");
+    EXPECT_EQ(passed.passages[0].tiles, (100 + each - 1) / each);
+    EXPECT_EQ(passed.passages[0].bytes, Bytes(400));
+    EXPECT_EQ(passed.passages[1].block, "out");
+  }
+}
+
+/// Cycles of the stage on a chip whose DMA moves so many bytes in a cycle.
+std::int64_t cycles_of(const Job& job, double bytes_per_cycle) {
+  sim::ChipConfig config = sim::test_chip();
+  config.cluster.dma.bytes_per_cycle = bytes_per_cycle;
+  sim::Chip chip(config, 1);
+  sim::JobTiming timing;
+  const auto body = [&]() -> sim::Process { timing = co_await chip.cluster().run(job); };
+  chip.kernel().spawn("test", body());
+  EXPECT_EQ(chip.kernel().run(), 0U);
+  return timing.stages[0].cycles.count();
+}
+
+// What cannot hide is the first tile on its way in and the last on its way out.
+TEST(Tiles, HideWhereTheDmaIsTwiceAsFastAsTheWalk) {
+  constexpr int kWords = 20'000, kTiles = 100;
+  const Passed passed = add_one_to_all(kWords, kWords / kTiles, 20);
+  const auto walk = static_cast<double>(cycles_of(passed.job, 1e9));
+  const double twice = 2.0 * 4 * kWords / walk;  // in each direction
+  const auto tiled = static_cast<double>(cycles_of(passed.job, twice));
+  EXPECT_GT(tiled, walk);
+  EXPECT_LT((tiled - walk) / tiled, 0.02);
+  // A DMA that is half as fast as the walk cannot.
+  EXPECT_GT(static_cast<double>(cycles_of(passed.job, twice / 4)), 1.8 * walk);
+}
+
+}  // namespace
+}  // namespace leviosim::work

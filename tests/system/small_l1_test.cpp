@@ -1,0 +1,91 @@
+// An L1 that cannot hold what the stages work on: the same poses, to the bit, from what passes
+// through it in tiles.
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <set>
+#include <string>
+
+#include "tests/workload/short_flight.h"
+
+namespace leviosim::vio::test {
+namespace {
+
+const ShortFlight& flight_of(int width) {
+  static const ShortFlight paper = draw_flight(PacedFlight(3, at_pace(1)), 5);
+  static const ShortFlight small = draw_flight(PacedFlight(3, at_pace(1)), 4, 96, 72);
+  return width == 160 ? paper : small;
+}
+
+struct Case {
+  const char* profile;
+  int l1_kib, cores, width;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+  return out << c.profile << " in " << c.l1_kib << " KiB, " << c.cores << " cores, " << c.width;
+}
+
+class InAnL1Of : public testing::TestWithParam<Case> {};
+
+TEST_P(InAnL1Of, PosesAreThoseOfALargeOne) {
+  const Case c = GetParam();
+  const ShortFlight& flight = flight_of(c.width);
+  const Profile profile = profile_named(c.profile, 1);
+  const Flown large = fly(flight, profile, c.cores);
+  const Flown small = fly(flight, profile, c.cores, Bytes(1024LL * c.l1_kib));
+  ASSERT_EQ(small.trajectory.size(), large.trajectory.size());
+  for (std::size_t i = 0; i < large.trajectory.size(); ++i)
+    ASSERT_TRUE(small.trajectory[i].T_world_body.matrix() ==
+                large.trajectory[i].T_world_body.matrix())
+        << "frame " << i;
+  EXPECT_EQ(small.sources, large.sources);
+  EXPECT_GT(large.count(PoseSource::Tracked) + large.count(PoseSource::Epnp) +
+                large.count(PoseSource::EightPoint),
+            20);
+  EXPECT_TRUE(large.passages.empty());
+}
+
+/// Blocks that pass in tiles, by stage.
+std::set<std::string> passing(const char* profile, int l1_kib) {
+  std::set<std::string> blocks;
+  for (const work::Passage& passage :
+       fly(flight_of(160), profile_named(profile, 1), 8, Bytes(1024LL * l1_kib)).passages)
+    blocks.insert(std::string(passage.stage) + ": " + std::string(passage.block));
+  return blocks;
+}
+
+TEST(SmallL1, PassesInTilesWhatHasNoRoom) {
+  for (const char* profile : {"levio", "next"}) {
+    EXPECT_EQ(passing(profile, 128), std::set<std::string>{}) << profile;
+    const std::set<std::string> half = passing(profile, 64), quarter = passing(profile, 32);
+    EXPECT_TRUE(half.contains("triangulation: observed landmarks")) << profile;
+    EXPECT_FALSE(half.contains("feature extraction: image strip")) << profile;
+    EXPECT_TRUE(quarter.contains("feature extraction: image strip")) << profile;
+    EXPECT_TRUE(quarter.contains("frame matching: tile of the keyframe's descriptors")) << profile;
+    EXPECT_TRUE(quarter.contains("triangulation: observed landmarks")) << profile;
+  }
+}
+
+// A stack of memory that what a stage needs at random does not fit into says what is missing.
+TEST(SmallL1, OfWhichNothingFitsIsRefusedWithStageAndBlock) {
+  try {
+    fly(flight_of(160), profile_named("levio", 1), 8, Bytes(16 * 1024));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("feature extraction"), std::string::npos)
+        << error.what();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Odometry, InAnL1Of,
+                         testing::Values(Case{"levio", 32, 8, 160}, Case{"levio", 32, 16, 160},
+                                         Case{"levio", 48, 1, 160}, Case{"levio", 64, 16, 160},
+                                         Case{"levio", 96, 4, 160}, Case{"levio", 128, 16, 160},
+                                         Case{"levio", 32, 4, 96}, Case{"next", 32, 8, 160},
+                                         Case{"next", 32, 16, 160}, Case{"next", 48, 4, 160},
+                                         Case{"next", 64, 8, 160}, Case{"next", 96, 1, 160},
+                                         Case{"next", 128, 16, 160}, Case{"next", 48, 16, 96}));
+
+}  // namespace
+}  // namespace leviosim::vio::test
