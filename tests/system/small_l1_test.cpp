@@ -17,19 +17,19 @@ const ShortFlight& flight_of(int width) {
   return width == 160 ? paper : small;
 }
 
-struct Case {
+struct L1Case {
   const char* profile;
   int l1_kib, cores, width;
 };
 
-std::ostream& operator<<(std::ostream& out, const Case& c) {
+std::ostream& operator<<(std::ostream& out, const L1Case& c) {
   return out << c.profile << " in " << c.l1_kib << " KiB, " << c.cores << " cores, " << c.width;
 }
 
-class InAnL1Of : public testing::TestWithParam<Case> {};
+class InAnL1Of : public testing::TestWithParam<L1Case> {};
 
 TEST_P(InAnL1Of, PosesAreThoseOfALargeOne) {
-  const Case c = GetParam();
+  const L1Case c = GetParam();
   const ShortFlight& flight = flight_of(c.width);
   const Profile profile = profile_named(c.profile, 1);
   const Flown large = fly(flight, profile, c.cores);
@@ -79,13 +79,13 @@ TEST(SmallL1, OfWhichNothingFitsIsRefusedWithStageAndBlock) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Odometry, InAnL1Of,
-                         testing::Values(Case{"levio", 32, 8, 160}, Case{"levio", 32, 16, 160},
-                                         Case{"levio", 48, 1, 160}, Case{"levio", 64, 16, 160},
-                                         Case{"levio", 96, 4, 160}, Case{"levio", 128, 16, 160},
-                                         Case{"levio", 32, 4, 96}, Case{"next", 32, 8, 160},
-                                         Case{"next", 32, 16, 160}, Case{"next", 48, 4, 160},
-                                         Case{"next", 64, 8, 160}, Case{"next", 96, 1, 160},
-                                         Case{"next", 128, 16, 160}, Case{"next", 48, 16, 96}));
+                         testing::Values(L1Case{"levio", 32, 8, 160}, L1Case{"levio", 32, 16, 160},
+                                         L1Case{"levio", 48, 1, 160}, L1Case{"levio", 64, 16, 160},
+                                         L1Case{"levio", 96, 4, 160}, L1Case{"levio", 128, 16, 160},
+                                         L1Case{"levio", 32, 4, 96}, L1Case{"next", 32, 8, 160},
+                                         L1Case{"next", 32, 16, 160}, L1Case{"next", 48, 4, 160},
+                                         L1Case{"next", 64, 8, 160}, L1Case{"next", 96, 1, 160},
+                                         L1Case{"next", 128, 16, 160}, L1Case{"next", 48, 16, 96}));
 
 }  // namespace
 }  // namespace leviosim::vio::test
