@@ -12,8 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-namespace fs = std::filesystem;
-
 constexpr std::uint64_t kReserve = 256 << 10;
 
 }  // namespace

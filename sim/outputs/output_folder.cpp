@@ -127,10 +127,4 @@ std::optional<std::string> OutputFolder::commit() {
   return std::nullopt;
 }
 
-namespace {
-
-namespace fs = std::filesystem;
-
-}  // namespace
-
 }  // namespace leviosim::outputs

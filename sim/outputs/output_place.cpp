@@ -87,6 +87,4 @@ std::string OutputPlace::put_aside(const fs::path& staged, int error) {
   refuse(is_taken ? "cannot be put in place: " + reason(fault) : why);
 }
 
-namespace fs = std::filesystem;
-
 }  // namespace leviosim::outputs

@@ -10,12 +10,6 @@
 #include "sim/base/error.h"
 
 namespace leviosim::outputs {
-namespace {
-
-namespace fs = std::filesystem;
-
-}  // namespace
-
 namespace fs = std::filesystem;
 
 fs::path StagingFolder::place_of(const fs::path& target) {
@@ -79,12 +73,13 @@ int StagingFolder::write(const std::string& name, std::string_view bytes) {
   const std::lock_guard<std::mutex> guard(mutex_);
   reserve_ = Descriptor();
   if (::faccessat(folder_.get(), name.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0) return EEXIST;
-  if (const int error = make_folders(name)) return error;
   Descriptor file;
   if (const int error = begin_file(file)) return error;
   if (const int error = write_all(file.get(), bytes)) return error;
   if (const int error = file.close()) return error;
   record_->add(name, state);
+  // Not before: a folder that the record does not lead to is taken for another's after a kill.
+  if (const int error = make_folders(name)) return error;
   return end_file(name.c_str());
 }
 

@@ -135,7 +135,7 @@ TEST_F(Simulated, AHalvedClockDoublesTheTimeNotTheCycles) {
 }
 
 TEST_F(Simulated, WhatDoesNotFitInL1IsRefusedWithStageBlockAndMissingBytes) {
-  traces::testing::expect_input_error([] { run(request(flight(), 8, {"cluster.l1.size=32KiB"})); },
+  traces::testing::expect_input_error([] { run(request(flight(), 8, {"cluster.l1.size=8KiB"})); },
                                       {"feature extraction", "bytes are missing", "L1"});
 }
 

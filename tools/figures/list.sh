@@ -10,6 +10,18 @@ after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --o
 shows 'leviosim whatif recorded cluster.fpu.units=1,2,8 cluster.icache.shared_size=8KiB'
 cut 'sed -n "/^in short/p;/^  *mean ms/,/^next/p" | grep -v -e "^next" -e "^    "'
 
+figure l1-levio
+needs data
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim whatif recorded cluster.l1.size=32,48,64,96,192,256KiB'
+cut 'sed -n "/^  *mean ms/,/^next/p" | grep -v -e "^next" -e "^    "'
+
+figure l1-next
+needs data
+after 'leviosim run --profile next --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out tracked'
+shows 'leviosim whatif tracked cluster.l1.size=32,48,64,96,192,256KiB'
+cut 'sed -n "/^  *mean ms/,/^next/p" | grep -v -e "^next" -e "^    "'
+
 figure missed-deadlines
 needs data
 shows 'leviosim run --platform gap9 -p cluster.clock=130MHz -p controller.clock=130MHz \

@@ -45,8 +45,6 @@ Dataset read_tum_vi(const fs::path& folder) {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr const char* kFrames = "rgb.txt";
 constexpr const char* kGyro = "gyroscope.txt";
 constexpr const char* kAccel = "accelerometer.txt";

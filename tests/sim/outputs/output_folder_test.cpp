@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
 #include <csignal>
@@ -61,6 +62,31 @@ TEST(OutputFolder, AppearsWholeOrNotAtAll) {
     out.write("x/y", "1");
   }
   EXPECT_FALSE(fs::exists(folder / "other"));
+}
+
+/// Killed where the record grows, before it leads to a file's folders: none of them is there, so
+/// the next run removes what was left.
+TEST(OutputFolder, LeavesNoFolderThatItsRecordDoesNotLeadTo) {
+  const Scratch folder;
+  int killed = 0;
+  for (rlim_t limit = 60; limit < 400; limit += 20) {
+    const fs::path out_path = folder / std::to_string(limit);
+    const int status = in_child([&] {
+      ::signal(SIGXFSZ, SIG_DFL);
+      const rlimit bytes{limit, limit};
+      OutputFolder out(folder_request(out_path));
+      ::setrlimit(RLIMIT_FSIZE, &bytes);
+      out.write("a", "1");
+      out.write("deep/er/b", "2");
+      out.write("deep/est/c", "3");
+      return 0;
+    });
+    killed += status == 128 + SIGXFSZ ? 1 : 0;
+    if (status == 0) continue;
+    write_results(out_path, "1");
+    EXPECT_TRUE(contents_of(out_path).is_ours()) << limit;
+  }
+  EXPECT_GT(killed, 3);
 }
 
 TEST(OutputFolder, TakesAnEmptyFolderAndOneThroughALink) {

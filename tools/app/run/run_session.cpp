@@ -22,11 +22,7 @@
 #include "traces/recordings/recording.h"
 
 namespace leviosim::tools {
-namespace {
-
 namespace fs = std::filesystem;
-
-}  // namespace
 
 outputs::OutputRequest out_request(const RunOptions& options, const char* option) {
   outputs::OutputRequest request{.option = option, .path = options.out, .replace = options.force};
