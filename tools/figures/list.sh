@@ -8,19 +8,19 @@ figure what-if
 needs data
 after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
 shows 'leviosim whatif recorded cluster.fpu.units=1,2,8 cluster.icache.shared_size=8KiB'
-cut 'sed -n "/^in short/p;/^  *mean ms/,/^next/p" | grep -v -e "^next" -e "^    "'
+cut 'sed -n "/^in short/p;/^  *mean ms/,/^next/p" | grep -v -e "^next" -e "^    [^ ]"'
 
 figure l1-levio
 needs data
 after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
 shows 'leviosim whatif recorded cluster.l1.size=32,48,64,96,192,256KiB'
-cut 'sed -n "/^  *mean ms/,/^next/p" | grep -v -e "^next" -e "^    "'
+cut 'sed -n "/^  *mean ms/,/^next/p" | grep -v -e "^next" -e "^    [^ ]"'
 
 figure l1-next
 needs data
 after 'leviosim run --profile next --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out tracked'
 shows 'leviosim whatif tracked cluster.l1.size=32,48,64,96,192,256KiB'
-cut 'sed -n "/^  *mean ms/,/^next/p" | grep -v -e "^next" -e "^    "'
+cut 'sed -n "/^  *mean ms/,/^next/p" | grep -v -e "^next" -e "^    [^ ]"'
 
 figure missed-deadlines
 needs data
@@ -41,7 +41,7 @@ points:
       platform.cluster.fpu.units: [1, 4]
 YAML'
 shows 'leviosim sweep clocks.yaml --out clocks'
-cut 'table point point "frame ms" "energy mJ" "L1 peak kB" "ATE m"'
+cut 'sed -n "/^point/,/^all of them/p"'
 
 # sim/VALIDATION.md
 figure paper-compute
