@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "sim/chip/config.h"
 
 namespace leviosim::platform {

@@ -8,8 +8,8 @@
 #include "platform_models/loader/loader.h"
 #include "platform_models/loader/new_platform.h"
 #include "platform_models/loader/override.h"
+#include "platform_models/loader/parameter_units.h"
 #include "platform_models/loader/schema.h"
-#include "platform_models/loader/units.h"
 #include "sim/base/check.h"
 #include "sim/base/text.h"
 

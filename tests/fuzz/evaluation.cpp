@@ -1,7 +1,7 @@
 // Trajectories in all formats, and their comparison: an estimate, kBetweenParts, the truth, and if
 // there is a third part, times of KITTI poses.
 #include "traces/trajectories/evaluation.h"
-#include "traces/trajectories/alignment.h"
+#include "traces/trajectories/trajectory_alignment.h"
 
 #include "tests/fuzz/fuzz_target.h"
 #include "traces/trajectories/trajectory_errors.h"

@@ -1,5 +1,5 @@
 // Accelerators in platform files: all of one or nothing, and what contradicts the rest is refused.
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "tests/platform_models/platform_test.h"
 #include "tests/support/paths.h"
 

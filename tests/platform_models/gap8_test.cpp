@@ -1,5 +1,5 @@
 // GAP8: what is known of the chip, and how its uncertain numbers are marked.
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "sim/work/op.h"
 #include "tests/platform_models/platform_test.h"
 

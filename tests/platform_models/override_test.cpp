@@ -1,8 +1,8 @@
 // Overrides (-p): they change what they name and nothing else, under the checks of files.
 
 #include "platform_models/loader/energy_fields.h"
+#include "platform_models/loader/parameter_units.h"
 #include "platform_models/loader/schema.h"
-#include "platform_models/loader/units.h"
 #include "sim/work/op.h"
 #include "tests/platform_models/platform_test.h"
 

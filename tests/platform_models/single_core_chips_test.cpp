@@ -1,5 +1,5 @@
 // Chips with one core besides the STM32F405: what is known of them, and how the rest is marked.
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "sim/chip/cost.h"
 #include "sim/work/op.h"
 #include "tests/platform_models/platform_test.h"

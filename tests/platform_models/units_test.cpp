@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "platform_models/loader/parameter_units.h"
 #include "platform_models/loader/schema.h"
-#include "platform_models/loader/units.h"
 #include "platform_models/loader/value.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest_name.h"

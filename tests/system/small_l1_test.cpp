@@ -67,6 +67,12 @@ TEST(SmallL1, PassesInTilesWhatHasNoRoom) {
   }
 }
 
+/// Descriptors that stay would leave no room for a hypothesis of EPnP on each core.
+TEST(SmallL1, EpnpKeepsAllItsCores) {
+  EXPECT_TRUE(passing("levio", 56).contains("frame matching: tile of descriptors"));
+  EXPECT_FALSE(passing("next", 56).contains("frame matching: tile of descriptors"));
+}
+
 // A stack of memory that what a stage needs at random does not fit into says what is missing.
 TEST(SmallL1, OfWhichNothingFitsIsRefusedWithStageAndBlock) {
   try {

@@ -8,8 +8,8 @@
 
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/flights/benchmark.h"
+#include "tools/app/study/flights/flight_pieces.h"
 #include "tools/app/study/flights/flight_plan.h"
-#include "tools/app/study/flights/pieces.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/trajectories/trajectory.h"
 

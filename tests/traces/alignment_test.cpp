@@ -1,5 +1,5 @@
 // Closed-form alignment against known transforms and against a search for something better.
-#include "traces/trajectories/alignment.h"
+#include "traces/trajectories/trajectory_alignment.h"
 
 #include <gtest/gtest.h>
 

@@ -9,9 +9,9 @@
 #include "tests/traces/test_folder.h"
 #include "traces/datasets/asl_reader.h"
 #include "traces/datasets/rng.h"
-#include "traces/trajectories/alignment.h"
 #include "traces/trajectories/association.h"
 #include "traces/trajectories/evaluation.h"
+#include "traces/trajectories/trajectory_alignment.h"
 #include "traces/trajectories/trajectory_errors.h"
 
 namespace leviosim::traces {

@@ -1,5 +1,5 @@
 #include "traces/trajectories/evaluation.h"
-#include "traces/trajectories/alignment.h"
+#include "traces/trajectories/trajectory_alignment.h"
 
 #include <gtest/gtest.h>
 

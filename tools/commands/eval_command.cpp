@@ -22,10 +22,10 @@
 #include "tools/app/report/accuracy_text.h"
 #include "tools/app/table/terminal_table.h"
 #include "tools/commands/commands.h"
-#include "traces/trajectories/alignment.h"
 #include "traces/trajectories/association.h"
 #include "traces/trajectories/attitude_errors.h"
 #include "traces/trajectories/evaluation.h"
+#include "traces/trajectories/trajectory_alignment.h"
 #include "traces/trajectories/trajectory_errors.h"
 #include "traces/trajectories/trajectory_file.h"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "platform_models/loader/loader.h"
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "sim/base/printable.h"
 #include "tools/app/cli/exit_status.h"
 #include "tools/app/cli/outputs.h"

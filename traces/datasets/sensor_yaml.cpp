@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/datasets/yaml_map.h"
+#include "traces/datasets/sensor_map.h"
 
 namespace leviosim::traces {
 namespace {

@@ -12,8 +12,8 @@
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
 #include "sim/base/units.h"
-#include "traces/trajectories/alignment.h"
 #include "traces/trajectories/association.h"
+#include "traces/trajectories/trajectory_alignment.h"
 
 namespace leviosim::traces {
 namespace {

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "traces/datasets/dataset.h"
-#include "traces/trajectories/alignment.h"
 #include "traces/trajectories/association.h"
 #include "traces/trajectories/trajectory.h"
+#include "traces/trajectories/trajectory_alignment.h"
 
 namespace leviosim::traces {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "traces/trajectories/alignment.h"
 #include "traces/trajectories/evaluation.h"
 #include "traces/trajectories/trajectory.h"
+#include "traces/trajectories/trajectory_alignment.h"
 
 namespace leviosim::traces {
 

@@ -1,6 +1,6 @@
 #include "workload/graph/anchored_landmarks.h"
 
-#include "workload/graph/landmark_records.h"
+#include "workload/graph/linearisation.h"
 
 namespace leviosim::vio {
 namespace {

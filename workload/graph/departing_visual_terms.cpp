@@ -1,6 +1,7 @@
 #include "workload/graph/departing_visual_terms.h"
 
 #include "workload/graph/landmark_records.h"
+#include "workload/graph/linearisation.h"
 #include "workload/math/matrix.h"
 
 namespace leviosim::vio {

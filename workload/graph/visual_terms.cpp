@@ -1,6 +1,7 @@
 #include "workload/graph/visual_terms.h"
 
 #include "workload/graph/landmark_records.h"
+#include "workload/graph/linearisation.h"
 
 namespace leviosim::vio {
 namespace {

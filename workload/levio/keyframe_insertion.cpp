@@ -2,8 +2,10 @@
 
 #include "workload/levio/geometry/pose_matrix.h"
 #include "workload/levio/geometry/two_view_point.h"
+#include "workload/levio/keyframe_matches.h"
 #include "workload/levio/vision/levio_matcher.h"
 #include "workload/vio/graph_at_hand.h"
+#include "workload/vio/keyframe_matching.h"
 #include "workload/vio/keyframes.h"
 #include "workload/vio/stages.h"
 

@@ -1,10 +1,14 @@
 #include "workload/levio/levio_front_end.h"
 
 #include "workload/levio/keyframe_insertion.h"
+#include "workload/levio/keyframe_matches.h"
 #include "workload/levio/vision/levio_extractor.h"
 #include "workload/vio/frame_pose.h"
+#include "workload/vio/keyframe_matching.h"
 #include "workload/vio/keyframe_pose.h"
 #include "workload/vio/keyframes.h"
+#include "workload/vio/map_start.h"
+#include "workload/vio/parallax.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {

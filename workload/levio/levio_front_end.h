@@ -4,6 +4,7 @@
 
 #include "workload/levio/geometry/sampling.h"
 #include "workload/vio/frame.h"
+#include "workload/vio/front_end.h"
 #include "workload/vio/front_end_state.h"
 #include "workload/vio/inertial_part.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "workload/next/feature_alignment.h"
 #include "workload/next/pose_refinement.h"
 #include "workload/vio/frame_pose.h"
 #include "workload/vio/stages.h"

@@ -2,12 +2,17 @@
 
 #include <algorithm>
 
+#include "workload/next/feature_alignment.h"
 #include "workload/next/guided_tracking.h"
+#include "workload/next/initial_path.h"
 #include "workload/next/motion_record.h"
 #include "workload/next/plausibility.h"
 #include "workload/vio/frame.h"
+#include "workload/vio/keyframe_matching.h"
 #include "workload/vio/keyframe_pose.h"
 #include "workload/vio/keyframes.h"
+#include "workload/vio/map_start.h"
+#include "workload/vio/parallax.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "workload/vio/front_end_state.h"
+#include "workload/vio/keyframe_record.h"
 #include "workload/vision/matcher.h"
 
 namespace leviosim::vio {

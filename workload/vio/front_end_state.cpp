@@ -1,18 +1,31 @@
 #include "workload/vio/front_end_state.h"
 
+#include <algorithm>
+
+#include "workload/levio/geometry/epnp_ransac.h"
+#include "workload/vio/keyframe_record.h"
+
 namespace leviosim::vio {
 namespace {
 
-/// Descriptors stay where those of two frames have room, as matching needs them. Places take theirs
-/// from local memory (next/loop).
+/// What EPnP takes with a hypothesis on each core, if all features of a frame match.
+Bytes memory_of_epnp(const Profile& profile, int matches, int cores) {
+  constexpr std::int64_t kMatch = 3 * 2 + 4 * 5;  // in the list, and side by side
+  if (!profile.runs_epnp()) return Bytes(0);
+  return Bytes(kMatch * matches) + levio::epnp_memory(matches, cores);
+}
+
+/// Descriptors stay where those of two frames have room, as matching needs them, and where they
+/// leave room for EPnP on all cores. Places take theirs from local memory (next/loop).
 template <class P>
 Residence residence_in(const work::Machine& machine, const Profile& profile, const Rig& rig) {
   const ExtractorOptions& options = profile.extractor;
   const int capacity = options.max_features(rig.width, rig.height);
   const Bytes room = machine.local().capacity();
   Residence residence;
-  residence.descriptors =
-      profile.loop.enabled || observed_features_size<P>(capacity, true) * 2 <= room;
+  const Bytes features = observed_features_size<P>(capacity, true);
+  const Bytes beside = std::max(features, memory_of_epnp(profile, capacity, machine.cores()));
+  residence.descriptors = profile.loop.enabled || features + beside <= room;
   residence.image = observed_features_size<P>(capacity, residence.descriptors) +
                         options.memory_of_whole_image(rig.width, rig.height, machine.cores()) <=
                     room;

@@ -6,7 +6,10 @@
 
 #include "workload/math/solve.h"
 #include "workload/vio/graph_at_hand.h"
+#include "workload/vio/keyframe_matching.h"
 #include "workload/vio/keyframe_pose.h"
+#include "workload/vio/map_start.h"
+#include "workload/vio/parallax.h"
 #include "workload/vio/stages.h"
 #include "workload/vio/triangulation.h"
 

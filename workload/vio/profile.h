@@ -161,6 +161,8 @@ struct Profile {
 
   int l1_alignment = 1;  ///< bytes; the release's allocator packs blocks
 
+  /// Whether poses are found by EPnP: guided tracking refines predicted ones.
+  bool runs_epnp() const { return use_epnp && !guided.enabled; }
   /// Whether a map that begins in motion waits for its alignment.
   bool initialises() const { return alignment.enabled && optimiser.joint; }
   /// Of a camera, whose poses may wait.

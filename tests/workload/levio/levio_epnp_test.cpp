@@ -63,6 +63,21 @@ double rotations_of(const work::Counts& counts) {
   return static_cast<double>(counts[Op::F64Mul]) / 2;
 }
 
+TEST(LevioEpnp, AHypothesisTakesItsScratchAndNoMore) {
+  test::Random random(3);
+  const Scene scene = make_scene(random, {.points = kEpnpSample});
+  work::Arena inputs("inputs", Bytes(1024));
+  const auto points = alloc_matrix<work::Native>(inputs, "points", kEpnpSample, 3);
+  const auto pixels = alloc_matrix<work::Native>(inputs, "pixels", kEpnpSample, 2);
+  const auto pose = alloc_matrix<work::Native>(inputs, "pose", 4, 4);
+  std::copy(scene.points.begin(), scene.points.end(), points.data().data());
+  std::copy(scene.pixels.begin(), scene.pixels.end(), pixels.data().data());
+  work::Arena scratch("scratch", kEpnpScratch);
+  solve_epnp<work::Native>({points, pixels}, CameraConstants<work::Native>(test::kCamera), pose,
+                           scratch);
+  EXPECT_EQ((scratch.peak().count() + 3) / 4 * 4, kEpnpScratch.count());
+}
+
 TEST(LevioEpnp, ExactMatchesGiveThePose) {
   test::Random random(1);
   for (int trial = 0; trial < 10; ++trial) {

@@ -138,6 +138,24 @@ TEST(LevioEightPoint, TheMotionDoesNotDependOnTheNumberOfCoresOrThePolicy) {
   EXPECT_EQ(test::to_eigen(counted.pose.T_b_a.t), test::to_eigen(eight.pose.T_b_a.t));
 }
 
+TEST(LevioEightPoint, AHypothesisTakesItsScratchAndNoMore) {
+  const TwoViewScene scene = make_two_view_scene(8, {.matches = kEssentialSample});
+  std::vector<float> a, b;
+  for (int i = 0; i < scene.n; ++i)
+    for (int c = 0; c < 2; ++c) {
+      a.push_back(static_cast<float>(scene.seen_a[i](c)));
+      b.push_back(static_cast<float>(scene.seen_b[i](c)));
+    }
+  const std::vector<std::uint16_t> sample{0, 1, 2, 3, 4, 5, 6, 7};
+  work::Arena results("results", Bytes(64));
+  work::Arena scratch("scratch", kEssentialScratch);
+  essential_from_sample<work::Native>({{a.data(), 2 * scene.n}, {b.data(), 2 * scene.n}, scene.n},
+                                      {sample.data(), kEssentialSample},
+                                      alloc_matrix<work::Native>(results, "essential", 3, 3),
+                                      scratch);
+  EXPECT_EQ((scratch.peak().count() + 3) / 4 * 4, kEssentialScratch.count());
+}
+
 TEST(LevioEightPoint, TriangulationFindsThePoint) {
   const TwoViewScene scene =
       make_two_view_scene(8, {.matches = 50, .baseline_m = {0.3, 0.6}, .depth_m = {1, 4}});
@@ -151,7 +169,9 @@ TEST(LevioEightPoint, TriangulationFindsThePoint) {
   for (int i = 0; i < scene.n; ++i) {
     const Vec2<work::Native> a{pixels.a[2 * i], pixels.a[2 * i + 1]},
         b{pixels.b[2 * i], pixels.b[2 * i + 1]};
-    const auto point = triangulate<work::Native>(T_a, T_b, a, b, camera, arena);
+    work::Arena scratch("scratch", kTriangulationScratch);
+    const auto point = triangulate<work::Native>(T_a, T_b, a, b, camera, scratch);
+    EXPECT_EQ(scratch.peak(), kTriangulationScratch);
     EXPECT_LT((test::to_eigen(point) - scene.points_a[i]).norm(), 0.02 * scene.points_a[i].norm());
     EXPECT_LT(reprojection_error_sq<work::Native>(T_b, point, b, camera), 0.05f);
   }

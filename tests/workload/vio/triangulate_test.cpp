@@ -23,8 +23,10 @@ Pose<Native> beside(float baseline) { return {Mat3<Native>::identity(), {-baseli
 
 Triangulated<Native> triangulate_native(const Pose<Native>& T_a, const Pose<Native>& T_b,
                                         const Vec2<Native>& a, const Vec2<Native>& b) {
-  work::Arena scratch("L1", Bytes(1024));
-  return triangulate<Native>(T_a, T_b, a, b, scratch);
+  work::Arena scratch("L1", kTriangulationScratch);
+  const auto seen = triangulate<Native>(T_a, T_b, a, b, scratch);
+  EXPECT_EQ(scratch.peak(), kTriangulationScratch);
+  return seen;
 }
 
 TEST(Triangulate, StereoFollowsTheClosedFormula) {

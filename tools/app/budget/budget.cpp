@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "sim/base/nearest_name.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "platform_models/loader/yaml_entries.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest_name.h"

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "sim/base/error.h"
 
 namespace leviosim::tools {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -110,26 +111,25 @@ std::string memory_line(const RunResult& run) {
 
 /// What has no room in L1 and passes through it in tiles; empty if all has.
 std::string tiles_line(const RunResult& run) {
-  std::vector<std::string> stages;
-  for (auto first = run.passages.begin(); first != run.passages.end();) {
-    const auto last = std::find_if(first, run.passages.end(),
-                                   [&](const work::Passage& p) { return p.stage != first->stage; });
-    Bytes bytes;
-    std::int64_t tiles = 0;
-    for (auto passage = first; passage != last; ++passage) {
-      bytes += passage->bytes;
-      tiles = std::max(tiles, passage->tiles);
-    }
-    const auto frames = static_cast<double>(std::max<std::size_t>(1, run.frames.size()));
-    const auto blocks = last - first;
-    stages.push_back(fmt::format("{} ({} block{}, {:.1f} tiles and {:.1f} kB a frame)",
-                                 printable(first->stage), blocks, blocks == 1 ? "" : "s",
-                                 static_cast<double>(tiles) / frames,
-                                 static_cast<double>(bytes.count()) * 1e-3 / frames));
-    first = last;
+  std::vector<work::Passage> stages;  // all blocks of a stage as one
+  std::map<std::string_view, int> blocks;
+  for (const work::Passage& passage : run.passages) {
+    if (blocks[passage.stage]++ == 0) stages.push_back({passage.stage, passage.block});
+    work::Passage& sum = *std::find_if(stages.begin(), stages.end(), [&](const work::Passage& s) {
+      return s.stage == passage.stage;
+    });
+    sum.tiles = std::max(sum.tiles, passage.tiles);
+    sum.bytes += passage.bytes;
   }
-  if (stages.empty()) return {};
-  return fmt::format("in tiles through L1: {}", fmt::join(stages, kComma));
+  const auto frames = static_cast<double>(std::max<std::size_t>(1, run.frames.size()));
+  std::vector<std::string> texts;
+  for (const work::Passage& s : stages)
+    texts.push_back(fmt::format(
+        "{} ({} block{}, {:.1f} tiles and {:.1f} kB a frame)", printable(s.stage), blocks[s.stage],
+        blocks[s.stage] == 1 ? "" : "s", static_cast<double>(s.tiles) / frames,
+        static_cast<double>(s.bytes.count()) * 1e-3 / frames));
+  return texts.empty() ? std::string()
+                       : fmt::format("in tiles through L1: {}", fmt::join(texts, kComma));
 }
 
 /// Empty where the platform has no energy figures.

@@ -203,10 +203,6 @@ void judge_by_truth(const TruthSigns& truth, const MapLimits& limits, const Faul
           fmt::format("the scale is {}", readable(*truth.scale, 2)));
 }
 
-}  // namespace
-
-namespace {
-
 /// Which poses the verdict does not judge.
 std::string guesses_text(const MapSigns& signs) {
   const std::string poses = signs.guesses == 1 ? "a pose" : fmt::format("{} poses", signs.guesses);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "sim/base/error.h"
 #include "tools/app/cli/command_line.h"
 #include "traces/work_traces/memory_budget.h"

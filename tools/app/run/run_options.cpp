@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "sim/base/csv.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/nearest_name.h"

@@ -8,10 +8,13 @@
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "sim/base/interruption.h"
 #include "sim/energy/estimate.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/result/energy_summary.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/run/run_request.h"
+#include "tools/app/run/simulate.h"
 #include "tools/app/table/terminal_table.h"
 #include "traces/trajectories/end_drift.h"
 #include "traces/trajectories/trajectory_errors.h"
@@ -114,6 +117,13 @@ class Numbers {
   std::map<std::string, double> read_;
 };
 
+RunOutcome compute(const Point& point, const Measure& how) {
+  RunRequest request = point.request;
+  request.evaluate = false;  // outcome_of() does, and takes note of what diverged
+  const RunResult result = simulate(request, [](const Progress&) { throw_if_interrupted(); });
+  return outcome_of(result, point.sequence->truth, how);
+}
+
 }  // namespace
 
 RunOutcome measure(const traces::Trajectory& estimate, const traces::Trajectory& truth,
@@ -204,6 +214,39 @@ std::vector<std::vector<RunOutcome>> by_row(const std::vector<Point>& points,
   std::vector<std::vector<RunOutcome>> all(rows);
   for (std::size_t i = 0; i < points.size(); ++i) all.at(points[i].row).push_back(outcomes[i]);
   return all;
+}
+
+std::vector<RunOutcome> run_outcomes(const std::vector<Point>& points, const Measure& how,
+                                     const RunnerOptions& options) {
+  std::vector<RunOutcome> outcomes(points.size());
+  PointBatch batch;
+  const platform::Schema schema;
+  for (const Point& point : points) {
+    throw_if_interrupted();
+    batch.keys.push_back(run_key(point, how, schema));
+  }
+  batch.compute = [&](std::size_t i) { return record_of(compute(points[i], how)); };
+  batch.take = [&](std::size_t i, const RunRecord& o) { outcomes[i] = run_outcome_of(o); };
+  run_points(batch, options);
+  return outcomes;
+}
+
+std::string measure_text(const Measure& how) {
+  return fmt::format("{}-aligned RMSE; mean translation error of sub-trajectories of {:g} m",
+                     name_of(how.alignment), how.length_m);
+}
+
+Head ate_head(const char* title) {
+  return {.title = title, .key = "ate_rmse_m", .decimals = 9, .unit = "m"};
+}
+
+Head completion_head() {
+  return {.title = "completion",
+          .key = "completion",
+          .decimals = 9,
+          .unit = "%",
+          .scale = 100,
+          .more_is_better = true};
 }
 
 }  // namespace leviosim::tools

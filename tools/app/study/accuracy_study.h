@@ -10,9 +10,10 @@
 #include "tools/app/study/point.h"
 #include "tools/app/study/runner.h"
 #include "tools/app/table/banded.h"
-#include "traces/trajectories/alignment.h"
+#include "tools/app/table/table.h"
 #include "traces/trajectories/scale_windows.h"
 #include "traces/trajectories/trajectory.h"
+#include "traces/trajectories/trajectory_alignment.h"
 #include "workload/vio/frame_facts.h"
 
 namespace leviosim::tools {
@@ -85,5 +86,12 @@ std::vector<RunOutcome> run_outcomes(const std::vector<Point>& points, const Mea
 std::vector<std::vector<RunOutcome>> by_row(const std::vector<Point>& points,
                                             const std::vector<RunOutcome>& outcomes,
                                             std::size_t rows);
+
+/// "SE3-aligned, relative errors over 40 m, …": how the errors of the plan are formed.
+std::string measure_text(const Measure& how);
+
+/// Heads of columns that tables of such runs share. @param title  for people
+Head ate_head(const char* title);
+Head completion_head();
 
 }  // namespace leviosim::tools

@@ -17,7 +17,6 @@
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/workload_options.h"
 #include "tools/app/study/accuracy_study.h"
-#include "tools/app/study/finished_runs.h"
 
 namespace leviosim::tools {
 namespace {

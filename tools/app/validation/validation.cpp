@@ -11,10 +11,10 @@
 #include "tools/app/table/json.h"
 #include "tools/app/validation/as_released.h"
 #include "tools/app/validation/distributions.h"
-#include "tools/app/validation/inputs.h"
 #include "tools/app/validation/paper_stages.h"
 #include "tools/app/validation/published_files.h"
 #include "tools/app/validation/quantities.h"
+#include "tools/app/validation/run_inputs.h"
 #include "workload/vio/profile.h"
 #include "workload/vio/stages.h"
 

@@ -9,10 +9,10 @@
 #include "tools/app/table/json.h"
 #include "tools/app/validation/distributions.h"
 #include "tools/app/validation/frame_log.h"
-#include "tools/app/validation/inputs.h"
 #include "tools/app/validation/paths.h"
 #include "tools/app/validation/quantities.h"
 #include "tools/app/validation/references.h"
+#include "tools/app/validation/run_inputs.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::tools {

@@ -8,9 +8,9 @@
 #include "tools/app/table/terminal_table.h"
 #include "tools/app/validation/as_released.h"
 #include "tools/app/validation/distributions.h"
-#include "tools/app/validation/inputs.h"
 #include "tools/app/validation/paper_stages.h"
 #include "tools/app/validation/paths.h"
+#include "tools/app/validation/run_inputs.h"
 #include "tools/app/validation/validation.h"
 
 namespace leviosim::tools {

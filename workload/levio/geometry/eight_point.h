@@ -25,8 +25,11 @@ struct TwoViewMatches {
   Vec2<P> in_b(int i) const { return {b[2 * i], b[2 * i + 1]}; }
 };
 
-/// The matrix of rank 2 with two equal singular values that fits the sample. Takes about 800 bytes
-/// of scratch during the call.
+/// Scratch of one hypothesis, in whole words.
+inline constexpr Bytes kEssentialScratch{668};
+
+/// The matrix of rank 2 with two equal singular values that fits the sample. Takes
+/// kEssentialScratch during the call.
 /// @param essential  3×3, the result
 /// @return the steps that the inverse power iteration took
 template <class P>

@@ -24,7 +24,10 @@ struct EpnpSample {
   MatrixView<P> pixels;  ///< 4×2
 };
 
-/// Takes about 3 kB of scratch during the call.
+/// Scratch of one hypothesis, in whole words.
+inline constexpr Bytes kEpnpScratch{3260};
+
+/// Takes kEpnpScratch during the call.
 /// @param T_camera_world  4×4, the result
 /// @return the mean reprojection error of the sample, px, with the penalty for depth
 template <class P>

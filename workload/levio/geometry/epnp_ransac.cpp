@@ -98,10 +98,6 @@ void keep_best(const EpnpBatch<P>& batch, int size, const LandmarkMatches<P>& ma
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// What a hypothesis takes in a batch, and the scratch of the core that solves it.
 constexpr Bytes kEpnpHypothesis =
     Bytes(2 * kEpnpSample + 4 * (5 * kEpnpSample + 16 + 1)) + kEpnpScratch;

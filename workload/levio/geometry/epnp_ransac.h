@@ -33,9 +33,6 @@ struct EpnpResult {
   int inliers = 0;  ///< matches with a reprojection error below inlier_px
 };
 
-/// Local memory that each core takes for a hypothesis.
-inline constexpr Bytes kEpnpScratch{3260};
-
 /// Local memory while it runs with one hypothesis for each core.
 /// @param matches  the most that there can be
 Bytes epnp_memory(int matches, int cores);

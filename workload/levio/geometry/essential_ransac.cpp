@@ -73,10 +73,6 @@ void keep_best(const EssentialBatch<P>& batch, int size, MatrixView<P> essential
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// What a hypothesis takes in a batch, and the scratch of the core that solves it.
 Bytes size_of_hypothesis(int matches) {
   return Bytes(2LL * kEssentialSample + 4LL * (9 + 2) + matches) + kEssentialScratch;

@@ -39,9 +39,6 @@ struct EssentialResult {
   int inliers = 0;
 };
 
-/// Local memory that each core takes for a hypothesis.
-inline constexpr Bytes kEssentialScratch{668};
-
 /// Local memory of estimate_essential() with one hypothesis for each core.
 /// @param matches  the most that there can be
 Bytes essential_memory(int matches, int cores);

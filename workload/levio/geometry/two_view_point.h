@@ -14,7 +14,7 @@ namespace leviosim::vio::levio {
 inline constexpr Bytes kTriangulationScratch{144};
 
 /// The point seen at the pixels `a` and `b` by two cameras. May lie behind them; not a number if
-/// the matrix is singular. Takes 144 bytes of scratch during the call.
+/// the matrix is singular. Takes kTriangulationScratch during the call.
 /// @param T_a  4×4, from the frame that the point shall be in to camera a
 /// @param T_b  likewise for camera b
 template <class P>

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "workload/graph/landmark_records.h"
+#include "workload/graph/linearisation.h"
 #include "workload/math/compilers.h"
 #include "workload/math/target_compiler.h"
 

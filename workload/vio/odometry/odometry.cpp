@@ -45,7 +45,7 @@ Profile fitted_to(const Rig& rig, Profile profile) {
 
 namespace {
 
-/// The only place that asks which of the two it is.
+/// The one of the two that the profile asks for.
 template <class P>
 std::unique_ptr<FrontEnd<P>> make_front_end(const Profile& profile, const Rig& rig,
                                             work::Machine& cluster, work::Arena& keyframe_memory,

@@ -13,6 +13,7 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/study/ablate/ablation.h"
 #include "tools/app/study/ablate/published_accuracy.h"
+#include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/finished_runs.h"
 #include "tools/app/table/table_files.h"
 #include "tools/app/table/terminal_table.h"
@@ -152,7 +153,7 @@ std::string ablation_markdown(const BatchPlan& plan, const std::vector<AblationR
 void run(const CLI::App& command, const BatchWords& words, const Words& command_line) {
   const BatchPlan plan = make_plan(command, words);
   const std::vector<Point> runs = ablation_runs(plan);
-  const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
+  const std::vector<RunOutcome> outcomes = run_outcomes(runs, plan.measure, plan.runner);
   const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, published_accuracy());
   const Printout text = printout(
       words.json,

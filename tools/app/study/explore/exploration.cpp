@@ -23,7 +23,7 @@
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/batch_plan.h"
 #include "tools/app/study/finished_runs.h"
-#include "tools/app/study/sweep/domain.h"
+#include "tools/app/study/sweep/key_domain.h"
 #include "tools/app/study/sweep/points.h"
 #include "tools/app/table/terminal_table.h"
 
@@ -371,7 +371,7 @@ void run(const CLI::App& command, const ExploreWords& words, const Words& comman
   check_plan(plan, dimensions);
   const auto points = sample_points(dimensions, count, seed);
   const std::vector<Point> runs = exploration_runs(plan, points);
-  const std::vector<RunOutcome> outcomes = run_outcomes(plan, runs);
+  const std::vector<RunOutcome> outcomes = run_outcomes(runs, plan.measure, plan.runner);
   const std::vector<ExploredPoint> explored =
       explored_points(plan, dimensions, points, runs, outcomes);
   const Table table = points_table(plan, dimensions, explored);

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "tools/app/study/accuracy_study.h"
+#include "tools/app/study/flights/flight_pieces.h"
 #include "tools/app/study/flights/flight_plan.h"
-#include "tools/app/study/flights/pieces.h"
 #include "tools/app/study/point.h"
 #include "tools/app/study/runner.h"
 #include "tools/app/study/sequence.h"

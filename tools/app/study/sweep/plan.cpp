@@ -9,7 +9,7 @@
 #include "sim/base/input_file.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/run/yaml_map.h"
-#include "tools/app/study/sweep/domain.h"
+#include "tools/app/study/sweep/key_domain.h"
 #include "tools/app/study/sweep/sweep_inputs.h"
 #include "tools/app/study/sweep/sweep_key.h"
 

@@ -15,7 +15,7 @@
 
 #include "platform_models/loader/platform_file.h"
 #include "platform_models/loader/value.h"
-#include "tools/app/study/sweep/domain.h"
+#include "tools/app/study/sweep/key_domain.h"
 #include "tools/app/study/sweep/sweep_inputs.h"
 #include "tools/app/study/sweep/sweep_key.h"
 

@@ -16,7 +16,7 @@
 #include "tools/app/run/run_request.h"
 #include "tools/app/run/workload.h"
 #include "tools/app/run/workload_options.h"
-#include "tools/app/study/sweep/domain.h"
+#include "tools/app/study/sweep/key_domain.h"
 #include "tools/app/study/sweep/plan.h"
 #include "tools/app/study/sweep/sweep_inputs.h"
 #include "tools/app/study/sweep/sweep_key.h"

@@ -9,8 +9,6 @@
 #include <vector>
 
 #include "tools/app/budget/budget.h"
-#include "tools/app/cli/command_line.h"
-#include "tools/app/html_report/page.h"
 #include "tools/app/study/sweep/plan.h"
 #include "tools/app/study/sweep/points.h"
 #include "tools/app/study/sweep/sweep_inputs.h"
@@ -29,8 +27,5 @@ struct SweepCheck {
 SweepCheck check_sweep(const Budget& budget, const SweepPlan& plan,
                        const std::vector<SweepPoint>& points, SweepInputs& inputs,
                        SweepStore& store);
-
-/// `leviosim sweep` (tools/commands/commands.h).
-Command add_sweep_command(CLI::App& app, const Words& words);
 
 }  // namespace leviosim::tools

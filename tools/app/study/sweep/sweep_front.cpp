@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "tools/app/study/sweep/pareto_front.h"
 #include "tools/app/table/terminal_table.h"
 

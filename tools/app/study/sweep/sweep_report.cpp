@@ -1,3 +1,5 @@
+#include "tools/app/study/sweep/sweep_report.h"
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 

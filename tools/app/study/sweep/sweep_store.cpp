@@ -6,7 +6,7 @@
 #include <chrono>
 #include <numeric>
 
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 #include "sim/base/check.h"
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"

@@ -175,16 +175,9 @@ Columns<Run> run_columns(const TunePlan& plan) {
   add_milli("", "", "frame_high_mj", &LoopOutcome::frame_j, &Banded::high);
   columns.insert(
       columns.end(),
-      {{{.title = "position error (ATE)", .key = "ate_rmse_m", .decimals = 9, .unit = "m"},
-        [](R r) { return r.outcome.ate_m; }},
+      {{ate_head("position error (ATE)"), [](R r) { return r.outcome.ate_m; }},
        {{.key = "matched"}, [](R r) { return r.outcome.matched; }},
-       {{.title = "completion",
-         .key = "completion",
-         .decimals = 9,
-         .unit = "%",
-         .scale = 100,
-         .more_is_better = true},
-        [](R r) { return r.outcome.completion; }},
+       {completion_head(), [](R r) { return r.outcome.completion; }},
        {{.key = "path_m", .decimals = 9}, [](R r) { return r.outcome.path_m; }},
        {{.title = "failure", .key = "failure"}, [](R r) { return r.outcome.failure; }},
        {{.key = "point_meets_limits"}, [&plan](R r) { return is_enough(r.point, plan); }}});

@@ -145,6 +145,7 @@ std::optional<Variant> with_accelerators_of(const std::string& name,
 
 constexpr const char* kWorkers = "platform.cluster.workers";
 constexpr const char* kEventUnit = "platform.cluster.max_workers";
+constexpr const char* kL1Size = "platform.cluster.l1.size";
 constexpr const char* kBase = "platform.isa.base";
 
 void raise(Variant& variant, const char* key, const std::string& value) {
@@ -270,6 +271,12 @@ void WhatIf::raise_event_unit(Variant& variant) {
     raise(variant, kEventUnit, workers->second);
 }
 
+bool WhatIf::has_other_l1(const SweepRow& settings, const sim::ChipConfig& chip) {
+  if (settings.count("platform") == 0 && settings.count(kL1Size) == 0) return false;
+  if (!recorded_l1_) recorded_l1_ = plan_.reference->resolve({}).config.cluster.l1.size;
+  return chip.cluster.l1.size != *recorded_l1_;
+}
+
 bool WhatIf::passes_in_tiles() {
   if (passes_in_tiles_) return *passes_in_tiles_;
   traces::WorkFrames reader(*inputs_.trace(trace_, {trace_}).work);
@@ -301,9 +308,7 @@ ResolvedPoint WhatIf::resolved(const Variant& variant, bool anew) {
       overrides.push_back(name.substr(kChipSettings.size()) + '=' + value);
   const platform::ResolvedPlatform platform = chip.resolve(overrides);
   const int workers = platform.config.cluster.workers;
-  const bool other_l1 =
-      platform.config.cluster.l1.size != plan_.reference->resolve({}).config.cluster.l1.size;
-  anew = anew || (other_l1 && !again_.empty() && passes_in_tiles());
+  anew = anew || (!again_.empty() && has_other_l1(settings, platform.config) && passes_in_tiles());
   if (!anew && (workers == trace.info().cores ||
                 (variant.settings.empty() && workers >= trace.info().cores))) {
     settings["cores"] = fmt::format("{}", trace.info().cores);

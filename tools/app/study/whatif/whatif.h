@@ -1,5 +1,5 @@
 // A recorded run on other chips: each variant is a replay of the one trace, or, where its work
-// would be divided among another number of cores, the run again.
+// would be another (divided among other cores, in other tiles through L1), the run again.
 //
 // Left out: what another timing changes in the computation of a replay (../../run/trace_source.h).
 #pragma once
@@ -81,6 +81,8 @@ class WhatIf {
   void raise_event_unit(Variant& variant);
   /// @param anew  the work is computed again, for it is another on this chip
   ResolvedPoint resolved(const Variant& variant, bool anew = false);
+  /// Whether a variant changes the size of L1.
+  bool has_other_l1(const SweepRow& settings, const sim::ChipConfig& chip);
   /// Whether the recorded work passes through L1 in tiles, so that another L1 makes it another.
   bool passes_in_tiles();
 
@@ -89,6 +91,7 @@ class WhatIf {
   SweepRow again_;
   SweepPlan plan_;
   KnownRuns known_;
+  std::optional<Bytes> recorded_l1_;  ///< once it was needed
   std::optional<bool> passes_in_tiles_;
   std::mutex resolving_;  ///< inputs_ remembers what it has read
 };

@@ -1,4 +1,4 @@
-#include "tools/app/study/sweep/domain.h"
+#include "tools/app/study/sweep/key_domain.h"
 
 #include <fmt/core.h>
 

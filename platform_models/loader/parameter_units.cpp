@@ -1,4 +1,4 @@
-#include "platform_models/loader/units.h"
+#include "platform_models/loader/parameter_units.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/datasets/yaml_map.h"
+#include "traces/datasets/sensor_map.h"
 
 #include <fmt/core.h>
 #include <fmt/format.h>

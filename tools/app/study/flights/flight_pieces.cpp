@@ -1,4 +1,4 @@
-#include "tools/app/study/flights/pieces.h"
+#include "tools/app/study/flights/flight_pieces.h"
 
 #include <algorithm>
 #include <cmath>

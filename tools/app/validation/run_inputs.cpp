@@ -1,4 +1,4 @@
-#include "tools/app/validation/inputs.h"
+#include "tools/app/validation/run_inputs.h"
 
 #include <fmt/format.h>
 

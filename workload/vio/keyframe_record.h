@@ -1,0 +1,83 @@
+// The last keyframe as it lies in L2 between frames (PARAMETERS.md#memory): its features, the
+// landmark that each of them shows, the motion since then as the IMU saw it, and the buffer that
+// the camera writes the next image to.
+#pragma once
+
+#include <cstdint>
+
+#include "workload/inertial/initialisation.h"
+#include "workload/inertial/preintegration.h"
+#include "workload/vision/features.h"
+
+namespace leviosim::vio {
+
+/// Landmark slot of a feature that shows none.
+inline constexpr int kNoLandmark = 0xffff;
+
+/// Features with the landmark slot of each, or kNoLandmark: 38 bytes per feature.
+template <class P>
+struct ObservedFeatures {
+  FeatureList<P> list;
+  typename P::template Span<typename P::U16> landmarks;
+};
+
+/// What features and their landmarks take, with their descriptors or without.
+template <class P>
+Bytes observed_features_size(int capacity, bool descriptors) {
+  using Half = typename P::U16;
+  const std::size_t each =
+      3 * sizeof(Half) + (descriptors ? kDescriptorWords * sizeof(typename P::U32) : 0);
+  return Bytes(static_cast<std::int64_t>(each) * capacity);
+}
+
+/// What lies in L2 since local memory has no room for it. It depends on sizes only, so that it is
+/// the same in every frame.
+struct Residence {
+  bool image = true;        ///< the whole image and its blurred copy have room; else strips of them
+  bool descriptors = true;  ///< those of two frames have room; else those of none stay
+};
+
+template <class P>
+struct KeyframeRecord {
+  using F = typename P::F32;
+
+  /// @param residence    what is missing in local memory lies here
+  /// @param keeps_image  whether the keyframe's image stays
+  KeyframeRecord(work::Arena& arena, int capacity, int width, int height,
+                 const Residence& residence, bool keeps_image, const StillnessOptions& standstill)
+      : features{alloc_features<P>(arena, capacity),
+                 arena.alloc<typename P::template Span<typename P::U16>>("landmarks of features",
+                                                                         capacity)},
+        interval(
+            arena.alloc<typename P::template Span<F>>("IMU interval", Preintegration<P>::kFloats)),
+        last_sample(arena.alloc<typename P::template Span<F>>("last IMU sample", kImuSampleFloats)),
+        stillness(arena.alloc<typename P::template Span<F>>(
+            "IMU sums of the last second", StillnessDetector<P>::floats(standstill))),
+        image{arena.alloc<typename P::template Span<typename P::Byte>>("camera image",
+                                                                       width * height),
+              width, height} {
+    if (keeps_image)
+      seen = {arena.alloc<typename P::template Span<typename P::Byte>>("image of the keyframe",
+                                                                       width * height),
+              width, height};
+    if (!residence.image) {
+      using Pixels = typename P::template Span<typename P::Byte>;
+      blurred = {arena.alloc<Pixels>("blurred image", width * height), width, height};
+    }
+    if (!residence.descriptors)
+      fresh = arena.alloc<typename P::template Span<typename P::U32>>("descriptors of the frame",
+                                                                      kDescriptorWords * capacity);
+  }
+
+  ObservedFeatures<P> features;
+  typename P::template Span<F> interval;     ///< pre-integrated motion since the keyframe
+  typename P::template Span<F> last_sample;  ///< where the next step of it begins
+  typename P::template Span<F> stillness;    ///< of the StillnessDetector
+  ImageView<P> image;
+  ImageView<P> seen;     ///< that of the keyframe; empty where patches are not aligned
+  ImageView<P> blurred;  ///< only where features are extracted from strips
+  /// Descriptors of the present frame, only where they do not stay in local memory.
+  typename P::template Span<typename P::U32> fresh;
+};
+
+}  // namespace leviosim::vio
