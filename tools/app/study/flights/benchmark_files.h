@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "tools/app/cli/command_line.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/flights/benchmark.h"
 #include "tools/app/study/flights/piece_figures.h"
@@ -19,7 +18,10 @@ Table benchmark_runs_table(const Benchmark& benchmark, const std::vector<Point>&
 /// The data of the page. @param runs  benchmark_runs_table()
 Json benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result, Table runs);
 
-/// `leviosim benchmark-flights` (tools/commands/commands.h).
-Command add_benchmark_flights_command(CLI::App& app, const Words& words);
+/// A row for each variant and piece.
+Table piece_rows(const Benchmark& benchmark, const BenchmarkResult& result);
+/// Of each variant the worst median of all motions, in a sentence.
+std::string benchmark_conclusion(const Benchmark& benchmark, const BenchmarkResult& result);
+std::string benchmark_markdown(const Benchmark& benchmark, const BenchmarkResult& result);
 
 }  // namespace leviosim::tools

@@ -4,14 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/app/cli/command_line.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/study/tune/tune_plan.h"
 #include "tools/app/study/tune/tuning.h"
-
-namespace CLI {
-class App;
-}
 
 namespace leviosim::tools {
 
@@ -25,7 +20,12 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
 /// That of all, in a sentence.
 std::string tune_conclusion(const std::vector<Choice>& choices);
 
-/// `leviosim tune` (tools/commands/commands.h).
-Command add_tune_command(CLI::App& app, const Words& words);
+/// What stands below the table: what its figures are, with the protocol of the errors.
+std::string tune_notes(const TunePlan& plan);
+/// What choice_text() says, as members of a document: `lowest`, an array, and `chosen`.
+Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices);
+/// The data of the page.
+Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
+               const std::vector<Choice>& choices);
 
 }  // namespace leviosim::tools
