@@ -86,9 +86,9 @@ studies() { # studies LEVIOSIM DATA --frames FRAMES
   both feasibility "$leviosim" platforms feasibility --data "$data" "${part[@]}" --quiet
   both stages "$leviosim" platforms stages gap9 gap9-eigen --data "$data" "${part[@]}" --quiet
   both systems "$leviosim" platforms systems --data "$data" "${part[@]}" --quiet
-  both explore "$leviosim" explore --data "$data" "${part[@]}" --profile levio \
-    --vary workload.window=6:12 --points 3 --seed 1 --relative 0.05 --cache explore-cache \
-    --quiet --force --out explore
+  both vary "$leviosim" ablate --data "$data" "${part[@]}" --profile levio \
+    --vary workload.window=6:12 --points 3 --seed 1 --relative 0.05 --cache vary-cache \
+    --quiet --force --out varied
   both compare "$leviosim" compare run replay-gap8
   step compare-md "$leviosim" compare run replay-gap8 --format markdown
   step compare-csv "$leviosim" compare run replay-gap8 --format csv

@@ -1,4 +1,4 @@
-// `leviosim ablate` and `leviosim explore` as users meet them.
+// `leviosim ablate` as users meet it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,9 +7,11 @@
 
 #include "tests/support/run_program.h"
 #include "tools/app/study/ablate/ablation.h"
-#include "tools/app/study/ablate/ablation_report.h"
+#include "tools/app/study/ablate/ablation_table.h"
+#include "tools/app/study/ablate/dimensions.h"
 #include "tools/app/study/ablate/published_accuracy.h"
-#include "tools/app/study/explore/exploration.h"
+#include "tools/app/table/table_files.h"
+#include "tools/app/table/terminal_table.h"
 #include "traces/synthesis/synthetic.h"
 #include "workload/vio/profile.h"
 
@@ -66,13 +68,14 @@ TEST(PublishedAccuracy, RefusesFaultsWithTheirPlace) {
 }
 
 TEST(Ablation, PutsThePapersValuesBesideItsSequencesOnly) {
-  BatchPlan plan;
+  Ablation ablation;
+  BatchPlan& plan = ablation.plan;
   plan.profiles = {"levio", "levio-no-imu"};
   plan.sizes = {{752, 480}, {160, 120}};
   plan.seeds = {1, 2, 3};
   for (const char* name : {"MH_01_easy", "MH_01_easy", "mine"})
     plan.sequences.push_back({name, "folder", "inputs", 100, 50, {}, "work"});
-  const std::vector<Point> runs = ablation_runs(plan);
+  const std::vector<Point> runs = ablation_runs(ablation);
   EXPECT_EQ(runs.size(), 2u * 2 * 3 * 3);
   std::vector<RunOutcome> outcomes;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -84,7 +87,8 @@ TEST(Ablation, PutsThePapersValuesBesideItsSequencesOnly) {
   }
   outcomes[2] = {};
   outcomes[2].failure = "the pose is no number";
-  const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, published_accuracy());
+  const std::vector<AblationRow> rows =
+      ablation_rows(ablation, runs, outcomes, published_accuracy());
   ASSERT_EQ(rows.size(), 2u * 2 * 2 + 2 * 2);
   EXPECT_EQ(rows[0].sequence, "MH_01_easy");
   EXPECT_EQ(rows[0].ate.runs, 6u);
@@ -100,12 +104,14 @@ TEST(Ablation, PutsThePapersValuesBesideItsSequencesOnly) {
   EXPECT_FALSE(rows[4].paper_ate);  // mine
   EXPECT_EQ(rows[8].sequence, "");
   EXPECT_EQ(rows[8].ate.median, (3.5 + rows[4].ate.median.value()) / 2);
-  expect_parts(ablation_text(plan, rows),
-               {"diverged", " 0.963 ", "0.963 (752x480)", "mean of them", "protocol"});
-  EXPECT_EQ(ablation_json(plan, rows).at("rows").size(), rows.size());
+  const Table table = ablation_table(ablation, rows);
+  expect_parts(terminal_text(table, kAnyWidth), {"diverged", " 0.963 ", "752x480", "mean of them"});
+  expect_parts(ablation_notes(ablation, rows, "- "), {"protocol"});
+  EXPECT_EQ(rows_json(table).at(0).at("paper_ate_m"), 0.963);
+  EXPECT_EQ(rows_json(table).size(), rows.size());
 
   plan.measure.length_m = 20;
-  EXPECT_FALSE(ablation_rows(plan, runs, outcomes, published_accuracy())[0].paper_relative);
+  EXPECT_FALSE(ablation_rows(ablation, runs, outcomes, published_accuracy())[0].paper_relative);
 }
 
 TEST(Dimensions, AreThePapersFive) {
@@ -150,8 +156,8 @@ TEST(Dimensions, PointsAreValidAndDoNotDependOnTheirNumber) {
 /// A folder of 6 frames without features: fast, and good enough for messages and files.
 class BatchCommands : public ::testing::Test {
  protected:
-  std::vector<std::string> words(const std::string& command, std::vector<std::string> further) {
-    std::vector<std::string> all{command,   "--data",    "flight=" + data_.root().string(),
+  std::vector<std::string> words(std::vector<std::string> further) {
+    std::vector<std::string> all{"ablate",  "--data",    "flight=" + data_.root().string(),
                                  "--size",  "32x24",     "--relative",
                                  "1",       "--out",     path("out"),
                                  "--cache", path("runs")};
@@ -159,9 +165,9 @@ class BatchCommands : public ::testing::Test {
     return all;
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  void expect_refusal(const std::string& command, const std::vector<std::string>& further,
+  void expect_refusal(const std::vector<std::string>& further,
                       const std::vector<std::string>& parts) {
-    expect_refused(run_program(folder_.path(), words(command, further)), parts);
+    expect_refused(run_program(folder_.path(), words(further)), parts);
     EXPECT_FALSE(fs::exists(folder_ / "out"));
     EXPECT_FALSE(fs::exists(folder_ / "runs"));
   }
@@ -171,39 +177,34 @@ class BatchCommands : public ::testing::Test {
 };
 
 TEST_F(BatchCommands, RefuseBadInputBeforeAnyRun) {
-  for (const char* command : {"ablate", "explore"}) {
-    expect_refused(run_program(folder_.path(), {command}), {"--data is missing"});
-    expect_refused(run_program(folder_.path(), {command, "--data", "x"}), {"--out is missing"});
-    expect_refusal(command, {"--data", "/nonexistent"}, {"/nonexistent"});
-    expect_refusal(command, {"--data", data_.root().string()}, {"holds the same flight"});
-    expect_refusal(command, {"--profile", "levoi"}, {"levoi", "levio"});
-    expect_refusal(command, {"--seed", "1,1"}, {"--seed '1'", "twice"});
-    expect_refusal(command, {"--seed", "one"}, {"--seed 'one'"});
-    expect_refusal(command, {"--jobs", "0"}, {"--jobs '0'"});
-    expect_refusal(command, {"--align", "rigid"}, {"rigid", "se3"});
-    expect_refusal(command, {"-p", "cluster.workers=4"}, {"cluster.workers=4", "without a chip"});
-    expect_refusal(command, {"-p", "workload.windw=4"}, {"did you mean 'workload.window'?"});
-    expect_refusal(command, {"--sede", "1"}, {"did you mean '--seed'?"});
-  }
-  expect_refusal("ablate", {"--size", "64x48"}, {"64x48"});
-  expect_refusal("explore", {"--size", "16x12"}, {"one image size"});
-  expect_refusal("explore", {"--vary", "workload.windo=4:8"}, {"did you mean 'workload.window'?"});
-  expect_refusal("explore", {"--vary", "workload.window=8:4"}, {"lower value first"});
-  expect_refusal("explore", {"--vary", "workload.window"}, {"NAME=LOW:HIGH"});
-  expect_refusal("explore", {"--vary", "workload.window=1:4"}, {"'1'", "from 2 to 32"});
-  expect_refusal("explore", {"--vary", "workload.gravity_updates=0:1"}, {"off or on"});
-  expect_refusal("explore", {"-p", "workload.window=6"}, {"workload.window=6", "is varied"});
-  expect_refusal("explore", {"--points", "0"}, {"--points '0'"});
-  std::vector<std::string> far = words("explore", {});
-  far[6] = "40";
-  expect_refused(run_program(folder_.path(), far), {"--relative 40", "only 5.00 m"});
+  expect_refused(run_program(folder_.path(), {"ablate"}), {"--data is missing"});
+  expect_refused(run_program(folder_.path(), {"ablate", "--data", "x"}), {"--out is missing"});
+  expect_refusal({"--data", "/nonexistent"}, {"/nonexistent"});
+  expect_refusal({"--data", data_.root().string()}, {"holds the same flight"});
+  expect_refusal({"--profile", "levoi"}, {"levoi", "levio"});
+  expect_refusal({"--seed", "1,1"}, {"--seed '1'", "twice"});
+  expect_refusal({"--seed", "one"}, {"--seed 'one'"});
+  expect_refusal({"--jobs", "0"}, {"--jobs '0'"});
+  expect_refusal({"--align", "rigid"}, {"rigid", "se3"});
+  expect_refusal({"-p", "cluster.workers=4"}, {"cluster.workers=4", "without a chip"});
+  expect_refusal({"-p", "workload.windw=4"}, {"did you mean 'workload.window'?"});
+  expect_refusal({"--sede", "1"}, {"did you mean '--seed'?"});
+  expect_refusal({"--size", "64x48"}, {"64x48"});
+  expect_refusal({"--vary", "workload.windo=4:8"}, {"did you mean 'workload.window'?"});
+  expect_refusal({"--vary", "workload.window=8:4"}, {"lower value first"});
+  expect_refusal({"--vary", "workload.window"}, {"NAME=LOW:HIGH, or paper"});
+  expect_refusal({"--vary", "workload.window=1:4"}, {"'1'", "from 2 to 32"});
+  expect_refusal({"--vary", "workload.gravity_updates=0:1"}, {"off or on"});
+  expect_refusal({"--vary", "paper", "--vary", "workload.window=4:8"}, {"given twice"});
+  expect_refusal({"--vary", "paper", "-p", "workload.window=6"},
+                 {"workload.window=6", "is varied"});
+  expect_refusal({"--vary", "paper", "--points", "0"}, {"--points '0'"});
 }
 
 TEST_F(BatchCommands, ReplaceNothingButResults) {
   fs::create_directory(folder_ / "out");
   outputs::write_file_atomically(folder_ / "out/thesis.tex", "mine");
-  expect_refused(run_program(folder_.path(), words("ablate", {"--force"})),
-                 {"something other than results"});
+  expect_refused(run_program(folder_.path(), words({"--force"})), {"something other than results"});
   EXPECT_TRUE(fs::exists(folder_ / "out/thesis.tex"));
 }
 
@@ -254,16 +255,16 @@ void expect_resumes(const fs::path& folder, std::vector<std::string> words,
       << again.err;
 }
 
-TEST_F(BatchCommands, ExplorationsResume) {
-  expect_resumes(
-      folder_.path(),
-      words("explore", {"--points", "30", "--profile", "levio", "--seed", "1,2", "--jobs", "1"}),
-      {"runs.csv", "points.csv", "best.md", "manifest.json"});
+TEST_F(BatchCommands, DrawnPointsResume) {
+  expect_resumes(folder_.path(),
+                 words({"--vary", "paper", "--points", "30", "--profile", "levio", "--seed", "1,2",
+                        "--jobs", "1"}),
+                 {"runs.csv", "rows.csv", "table.md", "manifest.json"});
   EXPECT_EQ(lines_of(base::read_text_file(folder_ / "out/runs.csv")), 1u + 30 * 2);
-  EXPECT_EQ(lines_of(base::read_text_file(folder_ / "out/points.csv")), 1u + 30);
+  EXPECT_EQ(lines_of(base::read_text_file(folder_ / "out/rows.csv")), 1u + 30);
   const ProgramResult shown = run_program(
-      folder_.path(), words("explore", {"--points", "30", "--profile", "levio", "--seed", "1,2",
-                                        "--force", "--report", (folder_ / "page.html").string()}));
+      folder_.path(), words({"--vary", "paper", "--points", "30", "--profile", "levio", "--seed",
+                             "1,2", "--force", "--report", (folder_ / "page.html").string()}));
   EXPECT_EQ(shown.status, 0) << shown.err;
   const std::string page = base::read_text_file(folder_ / "page.html");
   for (const char* part : {R"("axes":["relative_median_percent","ate_median_m"])",
@@ -275,7 +276,7 @@ TEST_F(BatchCommands, ManifestsDoNotDependOnTheNumberOfJobs) {
   std::string one;
   for (const char* jobs : {"--jobs=1", "--jobs=2"}) {
     const ProgramResult result =
-        run_program(folder_.path(), words("ablate", {"--profile", "levio", "--seed", "1", jobs}));
+        run_program(folder_.path(), words({"--profile", "levio", "--seed", "1", jobs}));
     ASSERT_EQ(result.status, 0) << result.err;
     const std::string manifest = base::read_text_file(folder_ / "out/manifest.json");
     if (one.empty()) one = manifest;
@@ -292,20 +293,20 @@ TEST(AblateCommand, ResumesAfterAKillAndComparesProfiles) {
   expect_resumes(folder.path(),
                  {"ablate", "--data", path("flight"), "--seed", "1,2", "--out", path("out"),
                   "--cache", path("runs"), "--relative", "0.5", "--jobs", "2"},
-                 {"runs.csv", "table.md", "table.json", "manifest.json"});
-  const Json table = Json::parse(base::read_text_file(folder / "out/table.json"));
-  ASSERT_EQ(table.at("rows").size(), 3u);
-  for (const Json& row : table.at("rows")) {
+                 {"runs.csv", "rows.csv", "table.md", "manifest.json"});
+  const Json rows = rows_json(read_csv("rows.csv", base::read_text_file(folder / "out/rows.csv")));
+  ASSERT_EQ(rows.size(), 3u);
+  for (const Json& row : rows) {
     EXPECT_EQ(row.at("sequence"), "flight");
-    EXPECT_EQ(row.at("ate").at("runs"), 2);
-    EXPECT_TRUE(row.at("ate").at("paper").is_null());
+    EXPECT_EQ(row.at("runs"), 2);
+    EXPECT_FALSE(row.contains("paper_ate_m"));
     EXPECT_EQ(row.at("completion"), 1.0);
-    EXPECT_LT(row.at("ate").at("low"), row.at("ate").at("high"));  // of two seeds
+    EXPECT_LT(row.at("ate_least_m"), row.at("ate_greatest_m"));  // of two seeds
   }
   EXPECT_EQ(lines_of(base::read_text_file(folder / "out/runs.csv")), 7u);
   expect_parts(
       base::read_text_file(folder / "out/table.md"),
-      {"| flight | 160x120 | levio-no-imu-no-epnp | 2 |", "- flight: SE3-aligned, 40 of 40"});
+      {"| flight | 160x120 | levio-no-imu-no-epnp | 2 | 0 |", "- flight: SE3-aligned, 40 of 40"});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "tests/support/run_program.h"
 #include "tools/app/record/statistic_list.h"
+#include "tools/app/table/table_files.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
@@ -134,7 +135,7 @@ TEST_F(BenchmarkOfFewFrames, GoesOnWhereItWasAndDrawsNothingTwice) {
   EXPECT_NE(more.err.find("run 4/4, 2 of them done before"), std::string::npos) << more.err;
   EXPECT_EQ(drawn(), 2u);
   const auto files = contents(folder_ / "more");
-  for (const char* name : {"runs.csv", "pieces.csv", "table.md", "table.json", "manifest.json"})
+  for (const char* name : {"runs.csv", "pieces.csv", "rows.csv", "table.md", "manifest.json"})
     EXPECT_TRUE(files.count(name)) << name;
   EXPECT_NE(read_text_file(folder_ / "page.html").find("ate_percent"), std::string::npos);
 
@@ -143,10 +144,11 @@ TEST_F(BenchmarkOfFewFrames, GoesOnWhereItWasAndDrawsNothingTwice) {
   const ProgramResult again = run(words(kPlan, "again", {"--jobs", "1"}));
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(drawn(), 0u);
-  for (const char* name : {"runs.csv", "pieces.csv", "table.md", "table.json"})
+  for (const char* name : {"runs.csv", "pieces.csv", "rows.csv", "table.md"})
     EXPECT_EQ(read_text_file(folder_ / "again" / name), files.at(name)) << name;
   const ProgramResult json = run(words(kPlan, "json", {"--json"}));
-  EXPECT_EQ(json.out, files.at("table.json"));
+  EXPECT_EQ(Json::parse(json.out).at("rows"),
+            rows_json(read_csv("rows.csv", files.at("rows.csv"))));
 }
 
 TEST_F(BenchmarkOfFewFrames, DrawsAFlightAnewThatWasChanged) {
@@ -167,8 +169,8 @@ TEST_F(BenchmarkFlights, APieceDrawnAloneIsThatOfTheWhole) {
     const ProgramResult result = run(all);
     EXPECT_EQ(result.status, 0) << result.err;
     std::vector<Json> found;
-    const Json table = Json::parse(read_text_file(folder_ / out / "table.json"));
-    for (const Json& piece : table.at("pieces"))
+    const std::string csv = read_text_file(folder_ / out / "pieces.csv");
+    for (const Json& piece : rows_json(read_csv("pieces.csv", csv)))
       if (piece.at("piece") == "25 frames") found.push_back(piece);
     return found;
   };

@@ -162,7 +162,7 @@ TEST_F(CommandLine, OptionsHaveOneNameEach) {
        {"run", "replay", "tune", "sweep", "flow", "validate", "ablate", "benchmark-flights"})
     EXPECT_NE(help(command).find("  --out DIR"), std::string::npos) << command;
   for (const char* command :
-       {"tune", "sweep", "ablate", "explore", "sensitivity", "platforms", "benchmark-flights"})
+       {"tune", "sweep", "ablate", "sensitivity", "platforms", "benchmark-flights"})
     EXPECT_NE(help(command).find("  --jobs N"), std::string::npos) << command;
   fs::create_directory(folder_ / "folder");
   expect_refusal({"microbench", "--csv", (folder_ / "folder").string()}, {"--csv", "is a folder"});

@@ -183,8 +183,9 @@ TEST_F(PrintoutTest, TablesFitTheTerminal) {
         fmt::format("tune{} --clock 200,300 --fps 10 --ate 1000 --miss-rate 1", few),
         fmt::format("ablate{} --size 32x24 --relative 0.0001 --force --out {}", few,
                     path("shown-ablate")),
-        fmt::format("explore{} --size 32x24 --points 1 --relative 0.0001 --force --out {}", few,
-                    path("shown-explore")),
+        fmt::format(
+            "ablate{} --size 32x24 --vary paper --points 1 --relative 0.0001 --force --out {}", few,
+            path("shown-varied")),
         fmt::format("benchmark-flights {} --motions {} --quiet --cache {} --force --out {}",
                     path("tables-flights.yaml"), folder_.string(), path("cache"),
                     path("shown-flights"))}) {
@@ -242,8 +243,8 @@ TEST_F(PrintoutTest, JsonIsADocumentOnStdout) {
                 "--miss-rate", "1"}),
       with_few({"ablate", "--data", flight, "--size", "32x24", "--relative", "0.0001", "--out",
                 path("ablate")}),
-      with_few({"explore", "--data", flight, "--size", "32x24", "--points", "1", "--relative",
-                "0.0001", "--out", path("explore")}),
+      with_few({"ablate", "--data", flight, "--size", "32x24", "--vary", "paper", "--points", "1",
+                "--relative", "0.0001", "--out", path("varied")}),
       {"benchmark-flights", path("flights.yaml"), "--motions", folder_.string(), "--quiet",
        "--cache", path("cache"), "--out", path("flown")},
   };

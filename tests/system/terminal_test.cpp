@@ -116,10 +116,10 @@ TEST_F(Terminal, NamesThatAreNoUtf8ComeThroughEveryCommand) {
       {"ablate", "--data", "name=" + flight(), "--size", "32x24", "--seed", "1", "--relative",
        "0.0001", "--cache", path("cache" + kHostile), "--out", path("a" + out)},
       "a" + out);
-  expect_done(
-      {"explore", "--data", "name=" + flight(), "--size", "32x24", "--seed", "1", "--points", "1",
-       "--relative", "0.0001", "--cache", path("cache" + kHostile), "--out", path("e" + out)},
-      "e" + out);
+  expect_done({"ablate", "--data", "name=" + flight(), "--size", "32x24", "--seed", "1", "--vary",
+               "paper", "--points", "1", "--relative", "0.0001", "--cache",
+               path("cache" + kHostile), "--out", path("e" + out)},
+              "e" + out);
   expect_done(
       {"tune", "--data", flight(), "--size", "32x24", "--clock", "300", "--fps", "10", "--ate",
        "1000", "--miss-rate", "1", "--cache", path("cache" + kHostile), "--out", path("t" + out)},

@@ -276,8 +276,21 @@ class TuneCommand : public ::testing::Test {
   TempFolder folder_;
 };
 
+TEST(DefaultClocks, ReachTheChipsHighest) {
+  std::vector<double> megahertz_of_gap9;
+  for (const Hertz clock : default_clocks(platform::resolve_platform("gap9").config))
+    megahertz_of_gap9.push_back(static_cast<double>(clock.count()) / 1e6);
+  EXPECT_EQ(megahertz_of_gap9, (std::vector<double>{50, 90, 140, 190, 230, 280, 320, 370}));
+  for (const std::string& name : platform::platform_names()) {
+    const sim::ChipConfig chip = platform::resolve_platform(name).config;
+    const std::vector<Hertz> clocks = default_clocks(chip);
+    EXPECT_TRUE(std::is_sorted(clocks.begin(), clocks.end())) << name;
+    for (const Hertz clock : clocks) EXPECT_EQ(setting_for(chip, name, clock).clock, clock) << name;
+  }
+}
+
 TEST_F(TuneCommand, RefusesWhatCannotBe) {
-  expect_refusal({}, {"--clock is missing", "100:370:10"});
+  expect_refusal({"--clock", "fast"}, {"--clock 'fast'", "100:370:10"});
   expect_refusal({"--clock", "100:400:10"}, {"400 MHz", "no voltage of GAP9", "370 MHz"});
   expect_refusal({"--clock", "100", "--fps", "10,30"}, {"30 frames/s", "recorded at 20 frames/s"});
   expect_refusal({"--clock", "100", "--deadline", "dorp"}, {"'dorp'", "did you mean 'drop'"});

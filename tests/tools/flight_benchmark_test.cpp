@@ -5,11 +5,11 @@
 #include <set>
 
 #include "tools/app/study/flights/benchmark.h"
-#include "tools/app/study/flights/benchmark_files.h"
-#include "tools/app/study/flights/benchmark_report.h"
+#include "tools/app/study/flights/benchmark_tables.h"
 #include "tools/app/study/flights/flight_plan.h"
 #include "tools/app/study/flights/piece_figures.h"
 #include "tools/app/table/table_files.h"
+#include "tools/app/table/terminal_table.h"
 #include "traces/datasets/rng.h"
 
 namespace leviosim::tools {
@@ -175,7 +175,8 @@ TEST_F(FlightBenchmark, CountsWhatDiverged) {
   EXPECT_FALSE(all.rows[0].percent.median) << "of a piece that diverged and one that did not";
   EXPECT_EQ(all.rows[2].percent.median.has_value(), true) << "of four pieces, one diverged";
   EXPECT_EQ(all.rows[3].diverged, 0u);
-  EXPECT_NE(benchmark_text(benchmark_, all, kAnyWidth).find("2 of 6"), std::string::npos);
+  EXPECT_EQ(rows_json(benchmark_rows(benchmark_, all)).at(0).at("diverged"), 2);
+  EXPECT_TRUE(rows_json(benchmark_rows(benchmark_, all)).at(0).at("ate_percent").is_null());
 }
 
 TEST_F(FlightBenchmark, SaysWhetherRunsKnewThatTheyWereWrong) {
@@ -200,24 +201,27 @@ TEST_F(FlightBenchmark, SaysWhetherRunsKnewThatTheyWereWrong) {
 
 TEST_F(FlightBenchmark, TellsTheSameInAllItsForms) {
   const BenchmarkResult all = result();
-  const std::string text = benchmark_text(benchmark_, all, kAnyWidth);
+  const Table rows = benchmark_rows(benchmark_, all);
+  const std::string text = terminal_text(rows, kAnyWidth) + benchmark_notes(benchmark_, all, "  ");
   for (const char* part :
-       {"90 frames", "development", "fresh", "0.035", "1.75", "1.00 … 2.50", "1.25 … 2.25",
-        "50 % (2 values)", "75 % (3 values)",
-        "left out of these starts: 2 at rest, 3 too near the end", "fresh: worlds 2"})
+       {"90 frames", "development", "fresh", "0.035", "1.75", "1.00", "2.50", "50 % (2 values)",
+        "75 % (3 values)", "left out of these starts: 2 at rest, 3 too near the end",
+        "fresh: worlds 2"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
-  const Json json = benchmark_json(benchmark_, all);
-  ASSERT_EQ(json.at("rows").size(), 6u);
-  EXPECT_EQ(json.at("rows")[0].at("ate").at("median"), 0.035);
-  EXPECT_EQ(json.at("rows")[0].at("ate_percent").at("over_seeds").at("low"), 1.25);
-  EXPECT_TRUE(json.at("rows")[2].at("motion").is_null());
-  ASSERT_EQ(json.at("pieces").size(), 8u);
-  EXPECT_EQ(json.at("pieces")[7].at("set"), "fresh");
-  EXPECT_EQ(json.at("pieces")[7].at("ate_m"), 0.23);
+  const Json json = rows_json(rows);
+  ASSERT_EQ(json.size(), 6u);
+  EXPECT_EQ(json.at(0).at("ate_m"), 0.035);
+  EXPECT_EQ(json.at(0).at("ate_percent_low"), 1);
+  EXPECT_EQ(json.at(0).at("ate_percent_seeds_low"), 1.25);
+  EXPECT_EQ(json.at(2).at("motion"), "all");
+  const Json pieces = rows_json(piece_rows(benchmark_, all));
+  ASSERT_EQ(pieces.size(), 8u);
+  EXPECT_EQ(pieces.at(7).at("set"), "fresh");
+  EXPECT_EQ(pieces.at(7).at("ate_m"), 0.23);
   const Table runs = benchmark_runs_table(benchmark_, runs_, outcomes_, {});
   const std::string csv = csv_text(runs);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 24);
-  const Json page = benchmark_page(benchmark_, all, runs);
+  const Json page = study_report(benchmark_page(benchmark_, all, runs));
   EXPECT_EQ(page.at("study").at("axes"), Json::array({"path_m", "ate_percent"}));
   EXPECT_EQ(page.at("study").at("table").at("ate_percent").size(), 24u);
   EXPECT_EQ(page.at("study").at("colour"), "set");

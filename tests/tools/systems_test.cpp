@@ -6,7 +6,7 @@
 #include "platform_models/loader/loader.h"
 #include "tests/traces/test_folder.h"
 #include "tools/app/study/ablate/ablation.h"
-#include "tools/app/study/ablate/ablation_report.h"
+#include "tools/app/study/ablate/ablation_table.h"
 #include "tools/app/study/ablate/published_accuracy.h"
 #include "tools/app/study/systems/predictions.h"
 #include "tools/app/study/systems/published_systems.h"
@@ -115,7 +115,8 @@ TEST(SystemsReport, ThePageHasAPointForEachRateWithAPower) {
 
 /// Of two sequences with two seeds, of which one run of the second failed.
 TEST(Ablation, TheMeanCountsRunsAndFailures) {
-  BatchPlan plan;
+  Ablation ablation;
+  BatchPlan& plan = ablation.plan;
   plan.sequences.resize(2);
   plan.sequences[0].name = "a";
   plan.sequences[1].name = "b";
@@ -129,7 +130,7 @@ TEST(Ablation, TheMeanCountsRunsAndFailures) {
   outcomes[1].ate_m = 0.3;
   outcomes[2].ate_m = 0.6;
   outcomes[3].failure = "lost";
-  const std::vector<AblationRow> rows = ablation_rows(plan, runs, outcomes, {});
+  const std::vector<AblationRow> rows = ablation_rows(ablation, runs, outcomes, {});
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].ate.failed, 0u);
   EXPECT_EQ(rows[1].ate.failed, 1u);
@@ -139,7 +140,8 @@ TEST(Ablation, TheMeanCountsRunsAndFailures) {
 }
 
 TEST(AccuracyComparison, StandsBesideTheAblationOfTheSameSequences) {
-  BatchPlan plan;
+  Ablation ablation;
+  BatchPlan& plan = ablation.plan;
   plan.sequences.resize(2);
   plan.sequences[0].name = "MH_01_easy";
   plan.sequences[1].name = "mine";
@@ -148,14 +150,14 @@ TEST(AccuracyComparison, StandsBesideTheAblationOfTheSameSequences) {
   row.profile = "next";
   row.size = {160, 120};
   row.ate = spread_of({0.031, 0.5, 0.1});
-  const std::string table = accuracy_comparison(plan, {row}, published_accuracy());
+  const std::string table = accuracy_comparison(ablation, {row}, published_accuracy());
   for (const char* part : {"next, here", "160x120", "0.10", "VINS-Mono", "0.14", "0.20",
                            "ORB-SLAM3", "LEVIO", "0.96", "1.82"})
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in:\n" << table;
   EXPECT_EQ(table.find("mine"), std::string::npos);
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 2 + 1 + 2 + 6 + 1);
   plan.sequences.erase(plan.sequences.begin());
-  EXPECT_EQ(accuracy_comparison(plan, {row}, published_accuracy()), "");
+  EXPECT_EQ(accuracy_comparison(ablation, {row}, published_accuracy()), "");
 }
 
 }  // namespace

@@ -18,7 +18,6 @@
   ADD(ask, tune)               \
   ADD(ask, sweep)              \
   ADD(ask, sensitivity)        \
-  ADD(ask, explore)            \
   ADD(ask, ablate)             \
   ADD(ask, benchmark_flights)  \
   ADD(guard, compare)          \

@@ -184,7 +184,7 @@ std::vector<std::string> next_for(const std::vector<Feasibility>& rows, const Ru
 void feasibility(const PlatformsOptions& options) {
   const RunOptions& run = options.run;
   run_study({"feasibility", "What a workload takes on chips", "chip", {}}, options.run,
-            inputs_of(options), [&](const RunnerOptions& runner) {
+            inputs_of(options), {}, [&](const RunnerOptions& runner) {
               const std::vector<Feasibility> rows = rows_for(options, runner, true);
               Answer answer{.parts = {fmt::format("{} on {}\n\n{}", run.profile,
                                                   printable(run.data), feasibility_table(rows))},
@@ -222,7 +222,7 @@ std::string without_small_chips(std::vector<Feasibility>& rows, bool by_name) {
 
 void stages(const PlatformsOptions& options) {
   run_study({"stages", "Stages of a workload on chips", "chip", {}}, options.run,
-            inputs_of(options), [&](const RunnerOptions& runner) {
+            inputs_of(options), {}, [&](const RunnerOptions& runner) {
               std::vector<Feasibility> rows = rows_for(options, runner, false);
               const std::string left_out = without_small_chips(rows, !options.names.empty());
               return Answer{
@@ -243,7 +243,7 @@ void systems(const PlatformsOptions& options) {
   any_chip.platform = "gap9";
   RunRequest request = make_chip_request(any_chip);
   run_study({"systems", "Systems that estimate motion", "system", {}}, options.run,
-            data_inputs(options.run.data), [&](const RunnerOptions& runner) {
+            data_inputs(options.run.data), {}, [&](const RunnerOptions& runner) {
               request.data = data_folder(options.run, runner.progress);
               ProgressLine line(runner.progress);
               const std::vector<SystemRow> rows =
@@ -443,7 +443,7 @@ Command add_platforms_command(CLI::App& app, const Words&) {
   add("--report", run_options.report, "FILE.html", "systems: page with power over frame rate");
   command->add_flag("--force", run_options.force, "replace these files")->group(group);
   command->add_flag("--yaml", options->yaml, "show: the platform file, all of it");
-  add_jobs_option(*command, run_options.jobs, "chip");
+  add_jobs_option(*command, run_options.runner.jobs, "chip");
   command->get_option("--jobs")->group(group);
   command->add_flag("--quiet", run_options.quiet, "no progress")->group(group);
   add_examples(*command,

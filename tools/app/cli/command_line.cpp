@@ -201,9 +201,13 @@ double parse_positive(const std::string& option, const std::string& text) {
 }
 
 void require(const CLI::App& command, const std::string& option, const std::string& expected) {
-  if (command.count(option) == 0)
-    throw InputError(
-        fmt::format("{}: {} is missing; expected {}", command.get_name(), option, expected));
+  expect_given(command.get_name(), option, command.count(option) == 0, expected);
+}
+
+void expect_given(const std::string& command, const std::string& option, bool is_missing,
+                  const std::string& expected) {
+  if (is_missing)
+    throw InputError(fmt::format("{}: {} is missing; expected {}", command, option, expected));
 }
 
 }  // namespace leviosim::tools

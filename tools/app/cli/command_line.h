@@ -51,5 +51,8 @@ std::int64_t parse_whole(const std::string& option, const std::string& text, std
 double parse_positive(const std::string& option, const std::string& text);
 /// @throws InputError if the option was not given
 void require(const CLI::App& command, const std::string& option, const std::string& expected);
+/// The same where the value says whether it was.
+void expect_given(const std::string& command, const std::string& option, bool is_missing,
+                  const std::string& expected);
 
 }  // namespace leviosim::tools

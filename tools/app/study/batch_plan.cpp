@@ -11,7 +11,7 @@
 #include "sim/base/interruption.h"
 #include "sim/base/printable.h"
 #include "sim/base/text.h"
-#include "tools/app/cli/version.h"
+#include "tools/app/cli/command_line.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_options.h"
 #include "tools/app/run/run_session.h"
@@ -39,12 +39,13 @@ std::vector<traces::ImageSize> parse_sizes(const std::vector<std::string>& words
 }
 
 /// Digests of what is read are kept with the folder's name for the messages.
-std::vector<Sequence> open_all(const BatchWords& words, const BatchPlan& plan) {
+std::vector<Sequence> open_all(const BatchOptions& options, const BatchPlan& plan,
+                               ProgressLine::Style progress) {
   std::vector<Sequence> sequences;
-  for (const std::string& word : words.data) {
+  for (const std::string& word : options.folders) {
     throw_if_interrupted();
     NamedFolder named = parse_named_folder(word);
-    if (named.folder == "synthetic") named.folder = cached_flight(plan.runner.progress).string();
+    if (named.folder == "synthetic") named.folder = cached_flight(progress).string();
     sequences.push_back(open_sequence(named, plan.frames, plan.sizes));
     for (std::size_t i = 0; i + 1 < sequences.size(); ++i)
       if (sequences[i].inputs == sequences.back().inputs)
@@ -79,43 +80,42 @@ std::vector<vio::Assignment> native_workload(const std::vector<std::string>& ove
   return parse_workload_overrides(split.workload);
 }
 
-void add_batch_options(CLI::App& command, BatchWords& words) {
+void add_batch_options(CLI::App& command, BatchOptions& options) {
   const TextOptions add{command};
-  add("--data", words.data, "[NAME=]DIR",
+  add("--data", options.folders, "[NAME=]DIR",
       "ASL/EuRoC folder of a sequence; repeatable. Folders of one name are pooled");
-  add("--profile", words.profiles, "NAME,...",
+  add("--profile", options.profiles, "NAME,...",
       "of the workload [levio,levio-no-imu,levio-no-imu-no-epnp]", true);
-  add("--size", words.sizes, "WxH,...", "image sizes [160x120]", true);
-  add("--seed", words.seeds, "N,...", "of the workload's random draws [1,2,3]", true);
-  add("-p,--set", words.overrides, "PATH=VALUE",
+  add("--size", options.sizes, "WxH,...", "image sizes [160x120]", true);
+  add("--seed", options.seeds, "N,...", "of the workload's random draws [1,2,3]", true);
+  add("-p,--set", options.overrides, "PATH=VALUE",
       "parameter of the workload in every run (leviosim workload); repeatable");
-  add("--frames", words.frames, "A:B", "frames, B exclusive [all]");
-  add("--align", words.align, "KIND", "se3, sim3, posyaw or none [se3]");
-  add("--relative", words.relative, "M", "length of sub-trajectories in metres [40]");
-  add_runner_options(command, words.runner, "run");
-  add("--out", words.out, "DIR", "folder for the results; must be new or empty");
-  command.add_flag("--force", words.force, "replace the results of an earlier batch");
-  command.add_flag("--quiet", words.quiet, "no progress");
+  add("--frames", options.frames, "A:B", "frames, B exclusive [all]");
+  add("--align", options.align, "KIND", "se3, sim3, posyaw or none [se3]");
+  add("--relative", options.relative, "M", "length of sub-trajectories in metres [40]");
+  command.add_flag("--quiet", options.quiet, "no progress");
 }
 
-BatchPlan make_plan(const CLI::App& command, const BatchWords& words) {
-  require(command, "--data", "an ASL folder; repeatable");
-  require(command, "--out", "a folder for the results");
-  BatchPlan plan;
-  plan.profiles = known_profiles(words.profiles);
-  plan.sizes = parse_sizes(words.sizes);
-  plan.seeds = batch_seeds(words.seeds);
-  plan.workload = native_workload(words.overrides);
-  if (!words.frames.empty()) plan.frames = traces::parse_frame_range(words.frames);
-  plan.measure = {traces::parse_alignment(words.align),
-                  parse_positive("--relative", words.relative)};
-  plan.runner = runner_options(words.runner, "run", words.quiet);
-  outputs::OutputRequest wanted{.option = "--out", .path = words.out, .replace = words.force};
-  for (const std::string& word : words.data)
+std::vector<std::filesystem::path> batch_inputs(const char* command, const BatchOptions& options) {
+  expect_given(command, "--data", options.folders.empty(), "an ASL folder; repeatable");
+  expect_given(command, "--out", options.out.empty(), "a folder for the results");
+  std::vector<std::filesystem::path> inputs;
+  for (const std::string& word : options.folders)
     for (const std::filesystem::path& input : data_inputs(parse_named_folder(word).folder))
-      wanted.inputs.push_back(input);
-  plan.out = std::make_shared<outputs::OutputFolder>(std::move(wanted));
-  plan.sequences = open_all(words, plan);
+      inputs.push_back(input);
+  return inputs;
+}
+
+BatchPlan make_plan(const BatchOptions& options, ProgressLine::Style progress) {
+  BatchPlan plan;
+  plan.profiles = known_profiles(options.profiles);
+  plan.sizes = parse_sizes(options.sizes);
+  plan.seeds = batch_seeds(options.seeds);
+  plan.workload = native_workload(options.overrides);
+  if (!options.frames.empty()) plan.frames = traces::parse_frame_range(options.frames);
+  plan.measure = {traces::parse_alignment(options.align),
+                  parse_positive("--relative", options.relative)};
+  plan.sequences = open_all(options, plan, progress);
   return plan;
 }
 
@@ -139,19 +139,8 @@ std::vector<std::string> sequence_names(const BatchPlan& plan) {
   return names;
 }
 
-Json study_manifest(const std::string& format, const Words& command_line) {
+Json batch_manifest(const BatchPlan& plan) {
   Json document;
-  document["format"] = format;
-  document["version"] = 1;
-  document["program"]["version"] = version();
-  document["program"]["revision"] = revision();
-  document["program"]["estimator"] = results_version();
-  document["command_line"] = command_line;
-  return document;
-}
-
-Json batch_manifest(const BatchPlan& plan, const Words& command_line) {
-  Json document = study_manifest("leviosim batch manifest", command_line);
   document["profiles"] = plan.profiles;
   for (const traces::ImageSize& size : plan.sizes) document["sizes"].push_back(size_text(size));
   document["seeds"] = plan.seeds;

@@ -1,19 +1,18 @@
 // What studies of accuracy have in common, which make native runs of many profiles, image sizes and
-// seeds over sequences: options, points, the manifest.
+// seeds over sequences: options, points, what their manifests say.
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "sim/outputs/output_folder.h"
-#include "tools/app/cli/command_line.h"
+#include "tools/app/cli/progress_line.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/point.h"
-#include "tools/app/study/runner.h"
 #include "tools/app/study/sequence.h"
+#include "tools/app/study/study.h"
 
 namespace CLI {
 class App;
@@ -21,21 +20,14 @@ class App;
 
 namespace leviosim::tools {
 
-/// As typed.
-struct BatchWords {
-  std::vector<std::string> data;
+/// As typed. Lists stand for the single values of RunOptions.
+struct BatchOptions : StudyOptions {
+  std::vector<std::string> folders;
   std::vector<std::string> profiles{"levio", "levio-no-imu", "levio-no-imu-no-epnp"};
   std::vector<std::string> sizes{"160x120"};
   std::vector<std::string> seeds{"1", "2", "3"};
-  std::vector<std::string> overrides;
-  std::string frames;
   std::string align = "se3";
   std::string relative = "40";
-  RunnerWords runner;
-  std::string out;
-  bool force = false;
-  bool quiet = false;
-  bool json = false;
 };
 
 /// Checked, and the sequences opened.
@@ -47,8 +39,6 @@ struct BatchPlan {
   std::vector<vio::Assignment> workload;  ///< of every run
   std::optional<traces::FrameRange> frames;
   Measure measure;
-  std::shared_ptr<outputs::OutputFolder> out;  ///< for the results
-  RunnerOptions runner;
 };
 
 /// What --seed, --profile and -p of native runs were given. @throws InputError naming the option
@@ -58,10 +48,14 @@ std::vector<std::string> known_profiles(const std::vector<std::string>& words);
 
 std::vector<vio::Assignment> native_workload(const std::vector<std::string>& overrides);
 
-void add_batch_options(CLI::App& command, BatchWords& words);
+void add_batch_options(CLI::App& command, BatchOptions& options);
 
+/// What the runs read. @throws InputError if it or --out is missing
+std::vector<std::filesystem::path> batch_inputs(const char* command, const BatchOptions& options);
+
+/// @param progress  of the synthetic flight, if it has to be made
 /// @throws InputError naming the option
-BatchPlan make_plan(const CLI::App& command, const BatchWords& words);
+BatchPlan make_plan(const BatchOptions& options, ProgressLine::Style progress);
 
 /// A run of the plan; its sequence must outlive it.
 Point make_run(const BatchPlan& plan, const Sequence& sequence, const std::string& profile,
@@ -70,11 +64,8 @@ Point make_run(const BatchPlan& plan, const Sequence& sequence, const std::strin
 /// Names of the sequences, each once, in the order in which they were given.
 std::vector<std::string> sequence_names(const BatchPlan& plan);
 
-/// What every manifest of a study begins with. @param format  "leviosim batch manifest"
-Json study_manifest(const std::string& format, const Words& command_line);
-
-/// The content of manifest.json. Nothing in it depends on the host or on cache hits.
-Json batch_manifest(const BatchPlan& plan, const Words& command_line);
+/// Answer::manifest.
+Json batch_manifest(const BatchPlan& plan);
 
 /// A command line to try next: the first of the sequences on a chip.
 std::vector<std::string> after_batch(const BatchPlan& plan);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/base/interruption.h"
 #include "tools/app/study/ablate/published_accuracy.h"
 
 namespace leviosim::tools {
@@ -33,14 +34,13 @@ std::optional<AblationRow::Paper> mean_paper(const std::vector<const AblationRow
   return AblationRow::Paper{*mean, (rows.front()->*of)->size};
 }
 
-AblationRow mean_row(const std::vector<AblationRow>& all, const traces::ImageSize& size,
-                     const std::string& profile) {
-  AblationRow mean;
-  mean.size = size;
-  mean.profile = profile;
+/// @param like  whose size, profile and point it is of
+AblationRow mean_row(const std::vector<AblationRow>& all, const AblationRow& like) {
+  AblationRow mean{
+      .size = like.size, .profile = like.profile, .point = like.point, .set = like.set};
   std::vector<const AblationRow*> rows;
   for (const AblationRow& row : all) {
-    if (row.profile != profile || row.size != size) continue;
+    if (row.profile != like.profile || row.size != like.size || row.point != like.point) continue;
     rows.push_back(&row);
     mean.ate.runs += row.ate.runs;
     mean.ate.failed += row.ate.failed;
@@ -58,9 +58,8 @@ AblationRow mean_row(const std::vector<AblationRow>& all, const traces::ImageSiz
   return mean;
 }
 
-AblationRow row_of(const std::string& sequence, const traces::ImageSize& size,
-                   const std::string& profile, const std::vector<RunOutcome>& outcomes) {
-  AblationRow row{sequence, size, profile, {}, {}, {}, {}, {}, {}};
+/// Errors over these outcomes.
+void condense(const std::vector<RunOutcome>& outcomes, AblationRow& row) {
   row.ate = spread_of(values_of(outcomes, &RunOutcome::ate_m));
   std::vector<std::optional<double>> relative;
   for (const RunOutcome& o : outcomes) {
@@ -72,50 +71,80 @@ AblationRow row_of(const std::string& sequence, const traces::ImageSize& size,
       row.protocols.push_back(o.protocol);
   }
   row.relative = spread_of(relative);
-  return row;
+}
+
+/// Rows without figures, in their order, but for the means.
+std::vector<AblationRow> empty_rows(const Ablation& ablation) {
+  std::vector<AblationRow> rows;
+  for (const std::string& sequence : sequence_names(ablation.plan))
+    for (const traces::ImageSize& size : ablation.plan.sizes)
+      for (const std::string& profile : ablation.plan.profiles)
+        for (std::size_t point = 0; point < ablation.points.size(); ++point)
+          rows.push_back({.sequence = sequence,
+                          .size = size,
+                          .profile = profile,
+                          .point = point,
+                          .set = effective(ablation.points[point], profile)});
+  return rows;
 }
 
 }  // namespace
 
-std::vector<Point> ablation_runs(const BatchPlan& plan) {
+std::vector<Point> ablation_runs(const Ablation& ablation) {
   std::vector<Point> runs;
-  std::size_t row = 0;
-  for (const std::string& name : sequence_names(plan))
-    for (const traces::ImageSize& size : plan.sizes)
-      for (const std::string& profile : plan.profiles) {
-        for (const Sequence& sequence : plan.sequences)
-          for (const std::uint32_t seed : plan.seeds) {
-            if (sequence.name != name) continue;
-            runs.push_back(make_run(plan, sequence, profile, size, seed));
-            runs.back().row = row;
-          }
-        ++row;
+  std::size_t number = 0;
+  for (const AblationRow& row : empty_rows(ablation)) {
+    throw_if_interrupted();
+    for (const Sequence& sequence : ablation.plan.sequences)
+      for (const std::uint32_t seed : ablation.plan.seeds) {
+        if (sequence.name != row.sequence) continue;
+        Point& run =
+            runs.emplace_back(make_run(ablation.plan, sequence, row.profile, row.size, seed));
+        run.request.workload.insert(run.request.workload.end(), row.set.begin(), row.set.end());
+        run.row = number;
       }
+    ++number;
+  }
   return runs;
 }
 
-std::vector<AblationRow> ablation_rows(const BatchPlan& plan, const std::vector<Point>& runs,
+std::vector<AblationRow> ablation_rows(const Ablation& ablation, const std::vector<Point>& runs,
                                        const std::vector<RunOutcome>& outcomes,
                                        const std::vector<PublishedAccuracy>& published) {
-  const std::vector<std::string> sequences = sequence_names(plan);
-  const auto of_rows =
-      by_row(runs, outcomes, sequences.size() * plan.sizes.size() * plan.profiles.size());
-  std::vector<AblationRow> rows;
-  for (const std::string& sequence : sequences)
-    for (const traces::ImageSize& size : plan.sizes)
-      for (const std::string& profile : plan.profiles) {
-        AblationRow row = row_of(sequence, size, profile, of_rows[rows.size()]);
-        row.paper_ate = paper_value(published, row, PaperFigure::ate);
-        if (plan.measure.length_m == kPaperLengthM)
-          row.paper_relative = paper_value(published, row, PaperFigure::relative);
-        rows.push_back(std::move(row));
-      }
-  if (sequences.size() < 2) return rows;
+  std::vector<AblationRow> rows = empty_rows(ablation);
+  const auto of_rows = by_row(runs, outcomes, rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    condense(of_rows[i], rows[i]);
+    if (rows[i].point != 0) continue;
+    rows[i].paper_ate = paper_value(published, rows[i], PaperFigure::ate);
+    if (ablation.plan.measure.length_m == kPaperLengthM)
+      rows[i].paper_relative = paper_value(published, rows[i], PaperFigure::relative);
+  }
+  const std::size_t sequences = sequence_names(ablation.plan).size();
+  if (sequences < 2) return rows;
   const std::vector<AblationRow> single = rows;
-  for (const traces::ImageSize& size : plan.sizes)
-    for (const std::string& profile : plan.profiles)
-      rows.push_back(mean_row(single, size, profile));
+  for (std::size_t i = 0; i < single.size() / sequences; ++i)
+    rows.push_back(mean_row(single, single[i]));
   return rows;
+}
+
+const AblationRow* best_row(const std::vector<AblationRow>& rows, const std::string& profile,
+                            Spread AblationRow::*by) {
+  const AblationRow* best = nullptr;
+  for (const AblationRow& row : rows) {
+    if (row.profile != profile || !(row.*by).median) continue;
+    if (row.sequence.empty() != rows.back().sequence.empty()) continue;  // the means come last
+    if (best == nullptr || *(row.*by).median < *(best->*by).median) best = &row;
+  }
+  return best;
+}
+
+const AblationRow* row_as_it_is(const std::vector<AblationRow>& rows, const std::string& profile) {
+  for (const AblationRow& row : rows)
+    if (row.profile == profile && row.point == 0 &&
+        row.sequence.empty() == rows.back().sequence.empty())
+      return &row;
+  return nullptr;
 }
 
 }  // namespace leviosim::tools

@@ -4,23 +4,18 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
-#include <memory>
-
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
 #include "sim/base/printable.h"
 #include "tools/app/budget/gate.h"
-#include "tools/app/cli/exit_status.h"
-#include "tools/app/cli/outputs.h"
 #include "tools/app/cli/printout.h"
 #include "tools/app/cli/version.h"
-#include "tools/app/html_report/report_option.h"
 #include "tools/app/record/record.h"
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/study/accuracy_study.h"
-#include "tools/app/study/batch_plan.h"
+#include "tools/app/study/study.h"
 #include "tools/app/study/tune/tune_plan.h"
 #include "tools/app/study/tune/tune_report.h"
 #include "tools/app/study/tune/tuning.h"
@@ -28,10 +23,9 @@
 namespace leviosim::tools {
 namespace {
 
-/// The content of manifest.json. Nothing in it depends on the host or on cache hits.
-Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
-                   const Words& command_line) {
-  Json document = study_manifest("leviosim tune manifest", command_line);
+/// Answer::manifest: what the points are made from, and what was chosen.
+Json manifest_of_plan(const TunePlan& plan, const std::vector<Choice>& choices) {
+  Json document;
   document["profile"] = plan.request.profile;
   document["seeds"] = Json::array();
   document["variations"] = Json::array();
@@ -51,11 +45,6 @@ Json tune_manifest(const TunePlan& plan, const std::vector<Choice>& choices,
   document.update(choice_json(plan, choices));
   return document;
 }
-
-struct GatedTuneWords : TuneWords {
-  GateOptions gate;
-  std::string report;
-};
 
 /// A loop with the first variation.
 struct ChosenRun {
@@ -86,80 +75,68 @@ Manifest manifest_of(const TunePlan& plan, const TunePoint& point, const ChosenR
   return make_manifest(run_options_of(plan, point), run.request, command_line);
 }
 
-void write_folder(const TunePlan& plan, const std::vector<TunePoint>& points,
-                  const std::optional<ChosenRun>& again, const Words& command_line) {
-  const std::vector<Choice> all = choices(plan, points);
-  plan.out->write("runs.csv", csv_text(tune_rows(plan, points)));
-  if (again)
-    write_run_folder(
-        *plan.out,
-        run_folder("chosen", again->result, manifest_of(plan, *chosen(all), *again, command_line),
-                   platform::to_yaml(again->request.platform)),
-        "chosen/");
-  plan.out->write("manifest.json", json_text(tune_manifest(plan, all, command_line), 2) + '\n');
+void declare(CLI::App& command, TuneOptions& options) { add_tune_options(command, options); }
+
+std::vector<std::filesystem::path> inputs_of(const TuneOptions& options) {
+  expect_json_or_budget(options.json, options.gate.budget);
+  return out_request(options).inputs;
 }
 
-/// Holds the chosen point against the budget, with the first variation.
-void hold(const Gate& gate, const TunePlan& plan, const TunePoint* best,
-          const std::optional<ChosenRun>& again, const Words& command_line) {
-  if (!again) {
-    print(Printout("no point to check against the budget\n"));
-    throw LimitNotMet();
-  }
-  print_check(gate.check(make_record(
-      "the chosen point", manifest_of(plan, *best, *again, command_line), again->result)));
+std::string head_of(const TunePlan& plan, std::size_t loops) {
+  return fmt::format("leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n",
+                     version(), plan.request.profile, printable(plan.options.platform),
+                     plan.request.cores, plan.sequence.frames, printable(plan.options.data), loops);
 }
 
-void run(const CLI::App& command, const GatedTuneWords& words, const Words& command_line) {
-  expect_json_or_budget(words.run.json, words.gate.budget);
-  const std::optional<Gate> gate = optional_gate(words.gate, {});
-  std::optional<outputs::OutputFile> page = claimed_report(words.report, words.run.force);
-  const TunePlan plan = make_tune_plan(command, words);
+Answer answer(const TuneOptions& options, const RunnerOptions& runner, const Words& command_line) {
+  const std::optional<Gate> gate = optional_gate(options.gate, {});
+  const TunePlan plan = make_tune_plan(options, runner.progress);
   const std::vector<Point> runs = tune_runs(plan);
   const std::vector<TunePoint> points =
-      tune_points(plan, runs, run_outcomes(runs, plan.measure, plan.runner));
+      tune_points(plan, runs, run_outcomes(runs, plan.measure, runner));
   const std::vector<Choice> all = choices(plan, points);
   const TunePoint* best = chosen(all);
-  std::optional<ChosenRun> again;
-  if (best != nullptr) again = run_again(plan, *best);
-  const auto lines = [&] {
-    const std::string head = fmt::format(
-        "leviosim {}: {} on {} with {} cores, {} frames of {}, {} closed loops\n\n", version(),
-        plan.request.profile, printable(plan.options.platform), plan.request.cores,
-        plan.sequence.frames, printable(plan.options.data), runs.size());
-    std::string choice = choice_text(plan, all);
-    if (again) choice += "run again by itself, it gave the same figures: confirmed\n";
-    std::vector<std::string> next;
-    if (best != nullptr) next.push_back(printable(run_command_text(plan, *best)));
-    return Printout({head + tune_table(plan, points), tune_notes(plan), choice})
-        .ending(tune_conclusion(all), next);
+  Answer answer{.parts = {head_of(plan, runs.size()) + tune_table(plan, points),
+                          choice_text(plan, all), tune_notes(plan)},
+                .conclusion = tune_conclusion(all),
+                .rows = tune_rows(plan, points),
+                .more = choice_json(plan, all),
+                .page = tune_page(plan, points, all),
+                .is_met = best != nullptr,
+                .manifest = manifest_of_plan(plan, all)};
+  answer.files = {{"runs.csv", csv_text(answer.rows)}};
+  if (best == nullptr) {
+    if (gate) answer.parts.emplace_back("no point to check against the budget\n");
+    return answer;
+  }
+  const ChosenRun again = run_again(plan, *best);
+  answer.parts[1] += "run again by itself, it gave the same figures: confirmed\n";
+  answer.next = {printable(run_command_text(plan, *best))};
+  const Manifest manifest = manifest_of(plan, *best, again, command_line);
+  if (gate)
+    answer.check = [gate = *gate,
+                    record = make_record("the chosen point", manifest, again.result)] {
+      return gate.check(record);
+    };
+  const RunFolder folder =
+      run_folder("chosen", again.result, manifest, platform::to_yaml(again.request.platform));
+  answer.write_more = [folder](outputs::OutputFolder& out) {
+    write_run_folder(out, folder, "chosen/");
   };
-  const Printout shown = printout(words.run.json, lines, [&] {
-    return table_document("tuning", tune_rows(plan, points), choice_json(plan, all));
-  });
-  if (plan.out)
-    publish(*plan.out, shown, [&] { write_folder(plan, points, again, command_line); });
-  else
-    print(shown);
-  if (page) publish_report(page, tune_page(plan, points, all), !words.run.json);
-  if (gate) hold(*gate, plan, best, again, command_line);
-  if (best == nullptr) throw LimitNotMet();
+  return answer;
 }
+
+const Study kTune{
+    "tune",
+    "Accuracy and power over the clock, in closed loops; the lowest clock that meets the limits",
+    "run",
+    {"leviosim tune --data flight --clock 240:370:130 --fps 10,20 --out tuned"},
+    Study::Leaves::folder};
 
 }  // namespace
 
 Command add_tune_command(CLI::App& app, const Words& words) {
-  CLI::App* command = app.add_subcommand(
-      "tune",
-      "Accuracy and power over the clock, in closed loops; the lowest clock that meets the limits");
-  const auto typed = std::make_shared<GatedTuneWords>();
-  add_tune_options(*command, *typed);
-  add_report_option(*command, typed->report);
-  add_gate_options(*command, typed->gate);
-  add_json_option(*command, typed->run.json);
-  add_examples(*command,
-               {"leviosim tune --data flight --clock 240:370:130 --fps 10,20 --out tuned"});
-  return {.app = command, .run = [=, &words] { run(*command, *typed, words); }, .goes_on = true};
+  return add_study<TuneOptions>(app, words, kTune, declare, inputs_of, answer);
 }
 
 }  // namespace leviosim::tools

@@ -115,15 +115,16 @@ std::vector<Variation> perturbations(std::uint32_t seed, std::size_t frames) {
 
 /// Perturbations for workloads that draw nothing at random while they track, unless seeds are asked
 /// for.
-void choose_variations(const CLI::App& command, const TuneWords& words, TunePlan& plan) {
-  const std::vector<std::uint32_t> seeds = parse_seed_list(words.run.seed);
-  const bool asks_for_seeds = command.count("--seed") > 0;
-  if (words.perturbs && asks_for_seeds && seeds.size() > 1)
+void choose_variations(const TuneOptions& options, TunePlan& plan) {
+  const bool asks_for_seeds = !options.seed.empty();
+  const std::vector<std::uint32_t> seeds =
+      parse_seed_list(asks_for_seeds ? options.seed : kTunedSeeds);
+  if (options.perturbs && asks_for_seeds && seeds.size() > 1)
     throw InputError("--perturb: perturbs runs of one seed; expected one, such as --seed 1");
   plan.options.seed = fmt::format("{}", seeds.front());
   plan.request = make_chip_request(plan.options);
   plan.perturbs =
-      words.perturbs || (!asks_for_seeds && value_of(plan.request, "workload.guided") != 0);
+      options.perturbs || (!asks_for_seeds && value_of(plan.request, "workload.guided") != 0);
   if (!plan.perturbs)
     for (const std::uint32_t seed : seeds)
       plan.variations.push_back({.name = fmt::format("seed {}", seed), .seed = seed});
@@ -186,49 +187,61 @@ ClockSetting setting_for(const sim::ChipConfig& chip, const std::string& name, H
   return setting;
 }
 
-void add_tune_options(CLI::App& command, TuneWords& words) {
-  const TextOptions add{command};
-  add_chip_run_options(command, words.run);
-  command.get_option("--seed")->type_name("N,...")->description(fmt::format(
-      "of the workload's random draws; figures are medians over them [{}]", kTunedSeeds));
-  add("--size", words.run.size, "WxH", "image size [160x120]");
-  add("--clock", words.clocks, "LOW:HIGH:STEP", "clocks in MHz; also a list 120,240,370");
-  add("--fps", words.fps, "F,...", "frames per second of the camera [the recorded rate]");
-  add("--deadline", words.deadline, "drop|queue",
-      "what becomes of a frame that finds the front end busy [drop]");
-  add("--miss-rate", words.miss_rate, "SHARE", "of frames that may be dropped or late [0.05]");
-  add("--ate", words.ate, "M", "absolute trajectory error that is accepted, in metres [0.2]");
-  command.add_flag(
-      "--perturb", words.perturbs,
-      "in place of seeds: starts over the recording, clocks 2 % off, a small gyro bias [where the "
-      "profile draws nothing at random and no seeds are given]");
-  add_runner_options(command, words.runner, "run");
-  add_out_options(command, words.run);
+std::vector<Hertz> default_clocks(const sim::ChipConfig& chip) {
+  constexpr std::int64_t kClocks = 8, kStep = 10'000'000;
+  const Hertz highest = sim::knows_energy(chip)
+                            ? chip.supply.highest.clock
+                            : std::max(chip.cluster.clock, chip.controller.clock);
+  std::vector<Hertz> clocks;
+  for (std::int64_t k = 1; k < kClocks; ++k) {
+    const Hertz clock((highest.count() * k / kClocks + kStep / 2) / kStep * kStep);
+    if (clock > (clocks.empty() ? Hertz(0) : clocks.back()) && clock < highest)
+      clocks.push_back(clock);
+  }
+  clocks.push_back(highest);
+  return clocks;
 }
 
-TunePlan make_tune_plan(const CLI::App& command, const TuneWords& words) {
-  require(command, "--clock", "clocks in MHz, such as 100:370:10");
+void add_tune_options(CLI::App& command, TuneOptions& options) {
+  const TextOptions add{command};
+  add_chip_run_options(command, options);
+  command.get_option("--seed")->type_name("N,...")->description(fmt::format(
+      "of the workload's random draws; figures are medians over them [{}]", kTunedSeeds));
+  add("--size", options.size, "WxH", "image size [160x120]");
+  add("--clock", options.clocks, "LOW:HIGH:STEP",
+      "clocks in MHz; also a list 120,240,370 [eight up to the chip's highest]");
+  add("--fps", options.fps, "F,...", "frames per second of the camera [the recorded rate]");
+  add("--deadline", options.busy, "drop|queue",
+      "what becomes of a frame that finds the front end busy [drop]");
+  add("--miss-rate", options.miss_rate, "SHARE", "of frames that may be dropped or late [0.05]");
+  add("--ate", options.ate, "M", "absolute trajectory error that is accepted, in metres [0.2]");
+  command.add_flag(
+      "--perturb", options.perturbs,
+      "in place of seeds: starts over the recording, clocks 2 % off, a small gyro bias [where the "
+      "profile draws nothing at random and no seeds are given]");
+  add_gate_options(command, options.gate);
+}
+
+TunePlan make_tune_plan(const TuneOptions& options, ProgressLine::Style progress) {
   TunePlan plan;
-  refuse_operating_points(words.run);
-  plan.options = words.run;
-  choose_variations(command, words, plan);
-  const std::vector<Hertz> clocks = parse_clocks(words.clocks);
+  refuse_operating_points(options);
+  plan.options = options;
+  choose_variations(options, plan);
   const sim::ChipConfig& chip = plan.request.platform.config;
+  const std::vector<Hertz> clocks =
+      options.clocks.empty() ? default_clocks(chip) : parse_clocks(options.clocks);
   // The fastest first: it is what cannot be had.
   for (auto clock = clocks.rbegin(); clock != clocks.rend(); ++clock)
     plan.clocks.push_back(setting_for(chip, plan.request.platform.name, *clock));
   std::reverse(plan.clocks.begin(), plan.clocks.end());
-  plan.deadline = soc::parse_deadline(words.deadline);
-  plan.miss_rate = parse_miss_rate(words.miss_rate);
-  plan.ate_m = parse_positive("--ate", words.ate);
-  if (!words.fps.empty()) plan.fps = parse_rates(words.fps);
-  plan.runner = runner_options(words.runner, "run", words.run.quiet);
-  if (!words.run.out.empty())
-    plan.out = std::make_shared<outputs::OutputFolder>(out_request(words.run));
-  plan.request.data = data_folder(words.run, plan.runner.progress);
+  plan.deadline = soc::parse_deadline(options.busy);
+  plan.miss_rate = parse_miss_rate(options.miss_rate);
+  plan.ate_m = parse_positive("--ate", options.ate);
+  if (!options.fps.empty()) plan.fps = parse_rates(options.fps);
+  plan.request.data = data_folder(options, progress);
   plan.recorded_hz = checked_recorded_rate(plan.request, plan.fps);
   if (plan.fps.empty()) plan.fps = {plan.recorded_hz};
-  plan.sequence = open_sequence({words.run.data, plan.request.data}, plan.request.frames,
+  plan.sequence = open_sequence({options.data, plan.request.data}, plan.request.frames,
                                 {plan.request.image_size});
   if (plan.perturbs) plan.variations = perturbations(plan.request.seed, plan.sequence.frames);
   return plan;

@@ -1,18 +1,17 @@
 // The options of `leviosim tune`: as typed, and what they ask for once checked.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "sim/outputs/output_folder.h"
-#include "tools/app/html_report/page.h"
+#include "tools/app/budget/gate.h"
+#include "tools/app/cli/progress_line.h"
 #include "tools/app/run/run_options.h"
 #include "tools/app/run/run_request.h"
 #include "tools/app/study/accuracy_study.h"
-#include "tools/app/study/runner.h"
 #include "tools/app/study/sequence.h"
+#include "tools/app/study/study.h"
 
 namespace CLI {
 class App;
@@ -33,18 +32,17 @@ struct Variation {
   double gyro_bias = 0;   ///< of all samples [rad/s]
 };
 
-/// As typed.
-struct TuneWords {
-  TuneWords() { run.seed = kTunedSeeds; }
+/// As typed. RunOptions::seed is a list here; empty: kTunedSeeds, or perturbations.
+struct TuneOptions : StudyOptions {
+  TuneOptions() { seed.clear(); }
 
-  RunOptions run;  ///< with a list of seeds
-  std::string clocks;
+  std::string clocks;  ///< empty: default_clocks()
   std::string fps;
-  std::string deadline = "drop";
+  std::string busy = "drop";  ///< --deadline
   std::string miss_rate = "0.05";
   std::string ate = "0.2";
   bool perturbs = false;
-  RunnerWords runner;
+  GateOptions gate;
 };
 
 /// What a clock comes with.
@@ -67,14 +65,17 @@ struct TunePlan {
   double miss_rate = 0;  ///< share of missed frames that is allowed
   double ate_m = 0;      ///< error that is allowed
   Measure measure;
-  RunnerOptions runner;
-  std::shared_ptr<outputs::OutputFolder> out;  ///< if results are to be written
 };
 
-void add_tune_options(CLI::App& command, TuneWords& words);
+void add_tune_options(CLI::App& command, TuneOptions& options);
 
+/// @param progress  of the synthetic flight, if it has to be made
 /// @throws InputError naming the option
-TunePlan make_tune_plan(const CLI::App& command, const TuneWords& words);
+TunePlan make_tune_plan(const TuneOptions& options, ProgressLine::Style progress);
+
+/// Eight clocks up to the highest that the supply allows, or that the chip has, evenly apart, each
+/// but the highest in whole tens of MHz.
+std::vector<Hertz> default_clocks(const sim::ChipConfig& chip);
 
 /// "100:370:10" or "120,240,370": clocks in MHz, both ends included, rising. @throws InputError
 std::vector<Hertz> parse_clocks(const std::string& text);

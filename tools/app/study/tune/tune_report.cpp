@@ -203,36 +203,20 @@ std::vector<StudyBox> choice_boxes(const TunePlan& plan, const std::vector<Choic
   return boxes;
 }
 
-// `leviosim tune`: closed loops over clock and frame rate. Its folder:
-//
-//   manifest.json   what the batch was made from, and what was chosen
-//   runs.csv        a row per point and seed
-//   chosen/         the run folder of the lowest clock that is enough, with the first seed, run
-//   again
-
 }  // namespace
 
 std::string tune_notes(const TunePlan& plan) {
   std::string text = fmt::format(
-      "missed: dropped, or the pose came later than a period after the frame; {}\n"
-      "latency from a frame to its pose; mean power over all of the time, with its band; mJ per "
-      "processed frame\n"
-      "ATE: {}-aligned RMSE of the processed frames, diverged if above the length of the path; "
-      "poses: frames with a pose\n",
+      "missed: dropped, or later than a period; {}; mean power over all of the time; ATE: "
+      "{}-aligned RMSE of the processed frames\n",
       info_of(plan.deadline).description, name_of(plan.measure.alignment));
-  if (plan.variations.size() < 2) return text;
-  if (!plan.perturbs)
-    return text + fmt::format(
-                      "medians over {} seeds, whose share of 95 % must meet the error; "
-                      "poses: the least\n",
-                      plan.variations.size());
-  std::vector<std::string> names;
-  for (const Variation& variation : plan.variations) names.push_back(variation.name);
-  return text +
-         fmt::format(
-             "medians over {} runs, since seeds change nothing: {}\nfailed: runs whose error "
-             "is above the limit or that diverged; poses: the least\n",
-             names.size(), fmt::join(names, ", "));
+  if (plan.variations.size() > 1)
+    text += fmt::format("medians over {}; failed: above the limit, or diverged; poses: the least\n",
+                        plan.perturbs ? fmt::format("{} perturbed runs, since seeds change nothing "
+                                                    "(runs.csv names them)",
+                                                    plan.variations.size())
+                                      : fmt::format("{} seeds", plan.variations.size()));
+  return text;
 }
 
 Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices) {
@@ -250,8 +234,8 @@ Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices) {
   return document;
 }
 
-Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
-               const std::vector<Choice>& choices) {
+StudyPage tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
+                    const std::vector<Choice>& choices) {
   StudyPage page;
   page.title = fmt::format("Clocks for {} on {}", plan.request.profile, plan.options.platform);
   page.boxes = choice_boxes(plan, choices);
@@ -262,7 +246,7 @@ Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
   page.x = "power_mw";
   page.y = "ate_rmse_m";
   page.colour = "fps";
-  return study_report(page);
+  return page;
 }
 
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points) {
@@ -293,7 +277,9 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
     table.push_back({{"failed", kRight, 1}, [&](P p) { return p.failures(plan.ate_m); }});
   table.push_back({{"poses %", kRight, 2}, [](P p) { return percent(p.completion()); }});
   table.push_back({{"meets limits", kLeft}, [&](P p) { return is_enough(p, plan) ? "yes" : ""; }});
-  return terminal_text(table_of(table, points));
+  std::vector<TunePoint> sorted = points;
+  std::stable_partition(sorted.begin(), sorted.end(), [&](P p) { return is_enough(p, plan); });
+  return terminal_text(table_of(table, sorted));
 }
 
 Table tune_rows(const TunePlan& plan, const std::vector<TunePoint>& points) {
@@ -301,6 +287,10 @@ Table tune_rows(const TunePlan& plan, const std::vector<TunePoint>& points) {
 }
 
 std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices) {
+  if (choices.size() == 1 && choices.front().lowest != nullptr) {
+    const std::string lucky = lucky_text(choices.front());  // the rest is the conclusion
+    return lucky.empty() ? lucky : lucky + '\n';
+  }
   std::string text = fmt::format(
       "the lowest clocks from which on all have at most {:g} % missed and an ATE of {:g} "
       "m in 95 % of the runs:\n",

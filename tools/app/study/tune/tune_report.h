@@ -1,16 +1,16 @@
-// What `leviosim tune` found, as text, CSV and JSON.
+// What `leviosim tune` found: tables, and sentences about them.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "tools/app/html_report/page.h"
+#include "tools/app/html_report/study_page.h"
 #include "tools/app/study/tune/tune_plan.h"
 #include "tools/app/study/tune/tuning.h"
 
 namespace leviosim::tools {
 
-/// A row per point.
+/// A row per point; those that meet the limits first, the lowest clock of them before.
 std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& points);
 Table tune_rows(const TunePlan& plan, const std::vector<TunePoint>& points);
 
@@ -24,8 +24,7 @@ std::string tune_conclusion(const std::vector<Choice>& choices);
 std::string tune_notes(const TunePlan& plan);
 /// What choice_text() says, as members of a document: `lowest`, an array, and `chosen`.
 Json choice_json(const TunePlan& plan, const std::vector<Choice>& choices);
-/// The data of the page.
-Json tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
-               const std::vector<Choice>& choices);
+StudyPage tune_page(const TunePlan& plan, const std::vector<TunePoint>& points,
+                    const std::vector<Choice>& choices);
 
 }  // namespace leviosim::tools

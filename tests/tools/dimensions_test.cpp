@@ -1,5 +1,5 @@
 // Which parameters of a point act on a profile.
-#include "tools/app/study/explore/exploration.h"
+#include "tools/app/study/ablate/dimensions.h"
 #include "workload/vio/profile.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 namespace leviosim::tools {
 namespace {
 
-TEST(Exploration, AProfileWithoutImuTakesNoParametersOfTheImu) {
+TEST(Dimensions, AProfileWithoutImuTakesNoParametersOfTheImu) {
   std::vector<vio::Assignment> point;
   std::size_t without_imu = 0;
   for (const vio::Parameter& parameter : vio::parameters()) {
