@@ -13,6 +13,7 @@
 #include "sim/base/nearest_name.h"
 #include "sim/base/text.h"
 #include "tools/app/cli/completions.h"
+#include "tools/app/cli/former_commands.h"
 #include "tools/app/cli/screen.h"
 #include "tools/app/cli/welcome.h"
 
@@ -82,6 +83,10 @@ std::string about_count(const CLI::ArgumentMismatch& error) {
 
 [[noreturn]] void fail_unknown_command(const std::vector<Command>& commands,
                                        const std::string& word) {
+  for (const FormerCommand& former : kFormerCommands)
+    if (word == former.name)
+      throw InputError(
+          fmt::format("unknown command '{}'; use '{}' instead", word, former.successor));
   std::vector<std::string> names = names_of(commands);
   names.emplace_back(kHelp);
   throw InputError(fmt::format("unknown command '{}'{}", word, base::did_you_mean(word, names)));
