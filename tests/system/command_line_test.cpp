@@ -18,6 +18,7 @@
 #include "tests/support/run_program.h"
 #include "tests/support/scratch.h"
 #include "tests/traces/test_folder.h"
+#include "tools/app/cli/former_commands.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/run/run_options.h"
 
@@ -156,7 +157,7 @@ TEST_F(CommandLine, OptionsHaveOneNameEach) {
     EXPECT_NE(help(command).find("  --fps F"), std::string::npos) << command;
   for (const char* command : {"run", "replay"})
     EXPECT_NE(help(command).find(".pftrace"), std::string::npos) << command;
-  for (const char* command : {"sensitivity", "microbench", "platforms", "calibrate"})
+  for (const char* command : {"sensitivity", "microbench", "platforms"})
     EXPECT_EQ(help(command).find("  --out"), std::string::npos) << command;
   for (const char* command :
        {"run", "replay", "tune", "sweep", "flow", "validate", "ablate", "benchmark-flights"})
@@ -166,6 +167,11 @@ TEST_F(CommandLine, OptionsHaveOneNameEach) {
     EXPECT_NE(help(command).find("  --jobs N"), std::string::npos) << command;
   fs::create_directory(folder_ / "folder");
   expect_refusal({"microbench", "--csv", (folder_ / "folder").string()}, {"--csv", "is a folder"});
+}
+
+TEST_F(CommandLine, NamesWhatDoesTheWorkOfAFormerCommand) {
+  for (const FormerCommand& former : kFormerCommands)
+    expect_refusal({std::string(former.name)}, {std::string(former.successor)});
 }
 
 TEST_F(CommandLine, NamesMissingOptions) {

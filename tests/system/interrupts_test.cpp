@@ -42,7 +42,7 @@ const std::vector<Started>& commands() {
        4000},
       {"replay", {"replay", "TRACE", "--out", "OUT"}, 200},
       {"trace", {"trace", "check", "TRACE"}, 30},
-      {"calibrate", {"calibrate", "--data", "FLIGHT"}, 2000},
+      {"validate --fit", {"validate", "--fit", "--data", "FLIGHT"}, 2000},
       {"sensitivity", {"sensitivity", "--data", "FLIGHT"}, 2000},
       {"validate", {"validate", "--data", "FLIGHT", "--out", "OUT"}, 500},
       {"microbench", {"microbench"}, 100},
@@ -283,7 +283,7 @@ TEST_F(Interrupts, EndEveryCommandSoonAndLeaveNothingBehind) {
 TEST_F(Interrupts, CountWhereTheCallerIgnoresThemAndWhateverTheWork) {
   // Ignored, as shells start what runs in the background.
   const auto before = std::signal(SIGINT, SIG_IGN);
-  Program program(folder_, {"calibrate", "--data", path("FLIGHT")});
+  Program program(folder_, {"validate", "--fit", "--data", path("FLIGHT")});
   std::signal(SIGINT, before);
   while (program.running() &&
          base::read_text_file(folder_ / "stderr.txt").find("frame 12/60") == std::string::npos)

@@ -1,4 +1,4 @@
-// validate, calibrate and sensitivity as users meet them.
+// validate and sensitivity as users meet them.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -34,7 +34,7 @@ class StudyCommands : public ::testing::Test {
 };
 
 TEST_F(StudyCommands, RefuseBadInputBeforeTheRun) {
-  for (const char* command : {"validate", "calibrate", "sensitivity"}) {
+  for (const char* command : {"validate", "sensitivity"}) {
     expect_refusal({command, "--data", path("nowhere"), "--quiet"}, {"nowhere"});
     expect_refusal({command, "--platfrom", "gap9"}, {"did you mean '--platform'"});
     expect_refusal({command, "--platform", "gap99"}, {"gap99", "did you mean 'gap9'"});
@@ -47,7 +47,7 @@ TEST_F(StudyCommands, RefuseBadInputBeforeTheRun) {
 
 /// Of files that are older, and of -p.
 TEST_F(StudyCommands, SayWhatHasBecomeOfTheFittedConstant) {
-  expect_refusal({"calibrate", "-p", "isa.instruction_overhead=1.2", "--data", path("x")},
+  expect_refusal({"validate", "-p", "isa.instruction_overhead=1.2", "--data", path("x")},
                  {"-p isa.instruction_overhead=1.2", "no such key any more", "delete it"});
   outputs::write_file_atomically(folder_ / "older.yaml",
                                  "extends: gap9\nisa:\n  instruction_overhead: 1.16\n");
@@ -121,7 +121,7 @@ TEST_F(StudyCommands, RunOnASyntheticFlight) {
   EXPECT_TRUE(fs::exists(work / "sweep.csv"));
 
   ::setenv("COLUMNS", "60", 1);
-  const ProgramResult fitted = run_program(work.path(), words({"calibrate"}));
+  const ProgramResult fitted = run_program(work.path(), words({"validate", "--fit"}));
   ::unsetenv("COLUMNS");
   EXPECT_EQ(fitted.status, 0) << fitted.err;
   std::string rule;
@@ -129,8 +129,9 @@ TEST_F(StudyCommands, RunOnASyntheticFlight) {
   EXPECT_EQ(fitted.out.find(rule), std::string::npos) << "a table of more than 60 columns";
   EXPECT_NE(fitted.out.find("a fit would ask for a factor of"), std::string::npos) << fitted.out;
 
+  expect_refusal(words({"validate", "--fit", "--out", path("fitted")}), {"--fit", "--out"});
   // Three frames never come to EPnP.
-  expect_refusal(words({"calibrate", "--frames", "0:3"}), {"no frame of the run came to"});
+  expect_refusal(words({"validate", "--fit", "--frames", "0:3"}), {"no frame of the run came to"});
 }
 
 }  // namespace

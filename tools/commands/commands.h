@@ -27,7 +27,6 @@
   ADD(guard, bisect)           \
   ADD(guard, report)           \
   ADD(trust, validate)         \
-  ADD(trust, calibrate)        \
   ADD(trust, microbench)       \
   ADD(trust, platforms)        \
   ADD(trust, workload)         \

@@ -1,10 +1,12 @@
-// `leviosim validate`: the paper's tables beside those of a run.
+// `leviosim validate`: the paper's tables beside those of a run; with --fit, what factor on all
+// instructions a fit to them would ask for.
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include <memory>
 #include <utility>
 
+#include "sim/base/error.h"
 #include "sim/base/printable.h"
 #include "tools/app/cli/exit_status.h"
 #include "tools/app/cli/outputs.h"
@@ -12,6 +14,7 @@
 #include "tools/app/run/run_folder.h"
 #include "tools/app/run/run_session.h"
 #include "tools/app/validation/as_released.h"
+#include "tools/app/validation/calibration/calibration.h"
 #include "tools/app/validation/validation.h"
 #include "tools/app/validation/validation_report.h"
 #include "tools/commands/commands.h"
@@ -42,6 +45,29 @@ std::pair<RunResult, Validation> validated(RunRequest& request, ProgressLine::St
   Validation validation = validate(result, log, profile_of(request), paper_references());
   request.observer = nullptr;
   return {std::move(result), std::move(validation)};
+}
+
+struct ValidateOptions : RunOptions {
+  bool fit = false;
+};
+
+void fit(const RunOptions& options) {
+  if (!options.out.empty())
+    throw InputError("validate: --fit prints a table and writes nothing; leave out --out");
+  RunRequest request = make_chip_request(options);
+  const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
+  request.data = data_folder(options, style);
+  FrameLog log(request.platform.config.cluster.core.code);
+  request.observer = &log;
+  const RunResult result = simulate_with_progress(request, style);
+  const std::vector<StageOnOneCore> stages = stages_on_one_core(log, request.platform.config);
+  print(printout(
+      options.json,
+      [&] {
+        return Printout({heading(options, result) + factor_table(stages)})
+            .ending(factor_conclusion(stages), {"leviosim sensitivity"});
+      },
+      [&] { return json_text(factor_json(stages), 2) + '\n'; }));
 }
 
 void validate(const RunOptions& given, const Words& words) {
@@ -86,16 +112,24 @@ void validate(const RunOptions& given, const Words& words) {
 Command add_validate_command(CLI::App& app, const Words& words) {
   CLI::App* command =
       app.add_subcommand("validate", "Compare a run with the tables of the LEVIO paper");
-  const auto options = std::make_shared<RunOptions>();
+  const auto options = std::make_shared<ValidateOptions>();
   add_chip_run_options(*command, *options);
+  command->add_flag("--fit", options->fit,
+                    "in place of the tables: the factor on all instructions that a fit to them "
+                    "would ask for (1 for a sound model; nothing is set by it)");
   TextOptions{*command}("--out", options->out, "DIR",
                         "folder for the results; must be new or empty");
   command->add_flag("--force", options->force, "replace the results of an earlier run");
   add_examples(*command,
-               {"leviosim validate --data flight",
+               {"leviosim validate --data flight", "leviosim validate --data flight --fit",
                 "leviosim validate --data flight -p isa.load_use_fraction=0.2 --out validated"});
   add_json_option(*command, options->json);
-  return {command, [=, &words] { validate(*options, words); }};
+  return {command, [=, &words] {
+            if (options->fit)
+              fit(as_released(*options));
+            else
+              validate(*options, words);
+          }};
 }
 
 }  // namespace leviosim::tools

@@ -71,7 +71,7 @@ cut 'sed -n "/^kcycles with the band/,/lie inside/p"'
 
 figure more-keypoints
 needs data
-shows 'leviosim calibrate -p workload.fast_threshold=15 -p workload.harris_threshold=4000 --data euroc/MH_01_easy_t05_t20'
+shows 'leviosim validate --fit -p workload.fast_threshold=15 -p workload.harris_threshold=4000 --data euroc/MH_01_easy_t05_t20'
 cut 'sed -n "/^in short/p;/^stage, 1 core/,\$p"'
 
 figure breakdown
@@ -87,7 +87,7 @@ cut 'table number number confidence value range frame optimiser | first 10'
 
 figure calibrate
 needs data
-shows 'leviosim calibrate --data euroc/MH_01_easy_t05_t20'
+shows 'leviosim validate --fit --data euroc/MH_01_easy_t05_t20'
 cut 'sed -n "/^in short/p;/^stage, 1 core/,\$p"'
 
 figure microbench

@@ -13,7 +13,8 @@ struct FormerCommand {
 };
 
 inline constexpr std::array kFormerCommands{
-    FormerCommand{"image-statistics", "tools/research/image_statistics.py DIR"},
+    FormerCommand{"explore", "leviosim ablate --vary paper"},
+    FormerCommand{"calibrate", "leviosim validate --fit"},
 };
 
 }  // namespace leviosim::tools
