@@ -23,9 +23,9 @@ struct RunCommandOptions : RunOptions {
   std::string report;
 };
 
-void run(const CLI::App& command, RunCommandOptions options, const Words& words) {
+void run(RunCommandOptions options, const Words& words) {
   set_run_defaults(options);
-  RunRequest request = make_request(command, options);
+  RunRequest request = make_request(options);
   check_print_options(options, options.gate.budget);
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
@@ -69,7 +69,7 @@ Command add_run_command(CLI::App& app, const Words& words) {
                 "leviosim run --platform gap9 --data flight --fps 10 --deadline drop --out loop",
                 "leviosim run --native --data flight --size 320x240 --out golden"});
   add_print_options(*command, *options);
-  return {command, [=, &words] { run(*command, *options, words); }};
+  return {command, [=, &words] { run(*options, words); }};
 }
 
 }  // namespace leviosim::tools

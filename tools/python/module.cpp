@@ -4,7 +4,6 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <CLI/CLI.hpp>
 
 #include <memory>
 
@@ -109,10 +108,7 @@ py::dict run(const py::dict& words, const py::object& progress) {
   {
     const ProgressCallback watch = watched(progress);
     const py::gil_scoped_release unlocked;
-    CLI::App typed;  // refuses what was given beside --native; here only what is in `options`
-    RunOptions declared;
-    add_run_options(typed, declared);
-    RunRequest request = make_request(typed, options);
+    RunRequest request = make_request(options);
     request.data = data_folder(options, ProgressLine::Style::None);
     request.time_bands = TimeBandsOf::team;
     WorkRecording recording(request.cores);

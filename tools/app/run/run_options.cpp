@@ -22,13 +22,17 @@ namespace {
 constexpr std::int64_t kLargestSide = 16384;
 
 /// A native run has no chip, so options about one are a misunderstanding.
-void refuse_chip_options(const CLI::App& command, const RunRequest& request) {
-  const auto refuse = [](const std::string& option) {
-    throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
+void refuse_chip_options(const RunOptions& options, const RunRequest& request) {
+  const auto refuse_if = [](bool is_given, const std::string& option) {
+    if (is_given)
+      throw InputError(fmt::format("run: --native computes without a chip; leave out {}", option));
   };
-  for (const char* option : {"--platform", "--cores", "--record", "--fps", "--deadline"})
-    if (command.count(option) > 0) refuse(option);
-  for (const std::string& text : request.overrides) refuse("--set " + text);
+  refuse_if(!options.platform.empty(), "--platform");
+  refuse_if(!options.cores.empty(), "--cores");
+  refuse_if(options.record, "--record");
+  refuse_if(!options.camera_fps.empty(), "--fps");
+  refuse_if(!options.deadline.empty(), "--deadline");
+  for (const std::string& text : request.overrides) refuse_if(true, "--set " + text);
 }
 
 void add_workload_options(CLI::App& command, RunOptions& options, const std::string& by_default) {
@@ -184,11 +188,11 @@ traces::ImageSize parse_size(const std::string& text) {
                   kLargestSide));
 }
 
-RunRequest make_request(const CLI::App& command, const RunOptions& options) {
+RunRequest make_request(const RunOptions& options) {
   RunRequest request = make_workload_request(options);
   set_initial_wait(options, request);
   if (options.native) {
-    refuse_chip_options(command, request);
+    refuse_chip_options(options, request);
   } else {
     resolve_chip(options, request);
     request.camera = parse_camera(options.camera_fps, options.deadline);

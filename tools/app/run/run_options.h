@@ -57,7 +57,7 @@ void add_out_options(CLI::App& command, RunOptions& options);
 
 /// Everything that can be checked without the data, whose folder is left for the caller to fill in.
 /// @throws InputError naming the option
-RunRequest make_request(const CLI::App& command, const RunOptions& options);
+RunRequest make_request(const RunOptions& options);
 RunRequest make_chip_request(const RunOptions& options);
 
 /// The number that --cores names, or by default that of the chip.
