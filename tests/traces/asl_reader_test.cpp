@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/traces/test_folder.h"
+#include "traces/datasets/imu_gaps.h"
 
 namespace leviosim::traces {
 namespace {
@@ -210,11 +211,51 @@ TEST(AslReader, ImuGapAboveTheLimit) {
   EXPECT_NO_THROW(open_asl(two_missing.root()));
   const AslFolder three_missing;
   three_missing.remove_lines(kImu, 30, 3);
-  expect_broken(three_missing,
-                {"imu0/data.csv", "gap of 20.000 ms", "5085000000", "5105000000", "15.000 ms"});
+  const Dataset whole = open_asl(AslFolder().root());
+  const Dataset bridged = open_asl(three_missing.root());
+  ASSERT_EQ(bridged.imu.size(), whole.imu.size());
+  for (std::size_t i = 0; i < whole.imu.size(); ++i)
+    EXPECT_EQ(bridged.imu[i].t_ns, whole.imu[i].t_ns);
+  ASSERT_EQ(bridged.notes.size(), 1u);
+  EXPECT_NE(bridged.notes[0].find("a gap of the IMU, the longest 20.0 ms"), std::string::npos);
+  EXPECT_TRUE(whole.notes.empty());
   OpenOptions patient;
   patient.max_imu_gap_periods = 4;
-  EXPECT_NO_THROW(open_asl(three_missing.root(), patient));
+  EXPECT_TRUE(open_asl(three_missing.root(), patient).notes.empty());
+  const AslFolder many_missing;
+  many_missing.remove_lines(kImu, 22, 22);
+  expect_broken(many_missing, {"imu0/data.csv", "gap of 115.000 ms", "at most 100 ms",
+                               "--frames 0:", " or --frames "});
+}
+
+TEST(AslReader, SamplesOfABridgeLieOnALine) {
+  Dataset data;
+  data.imu_model.rate_hz = 100;
+  data.frames = {{0, {}, 0}, {100'000'000, {}, 0}};
+  data.imu = {{0, {0, 0, 1}, {4, 0, 9}}, {80'000'000, {8, 0, 1}, {4, 0, 1}}};
+  bridge_imu_gaps(data, 3);
+  ASSERT_EQ(data.imu.size(), 9u);
+  for (std::size_t k = 0; k < data.imu.size(); ++k) {
+    EXPECT_EQ(data.imu[k].t_ns, static_cast<std::int64_t>(k) * 10'000'000);
+    EXPECT_NEAR(data.imu[k].gyro.x(), static_cast<double>(k), 1e-12);
+    EXPECT_NEAR(data.imu[k].accel.z(), 9 - static_cast<double>(k), 1e-12);
+  }
+}
+
+TEST(AslReader, ClockAndScaleOfTheCalibrationAreApplied) {
+  const Dataset plain = open_asl(AslFolder().root());
+  const AslFolder folder;
+  const auto append = [&](const char* name, const char* line) {
+    const fs::path file = folder.mav0(name);
+    outputs::write_file_atomically(file, base::read_text_file(file) + line);
+  };
+  append("cam0/sensor.yaml", "timeshift_cam_imu: -0.004\n");
+  append("imu0/sensor.yaml", "accelerometer_scale: 0.98\n");
+  const Dataset shifted = open_asl(folder.root());
+  EXPECT_EQ(shifted.frames.front().t_ns, plain.frames.front().t_ns - 4'000'000);
+  EXPECT_TRUE(shifted.imu[5].accel.isApprox(0.98 * plain.imu[5].accel, 1e-12));
+  append("imu0/sensor.yaml", "accelerometer_scale: 9.8\n");
+  expect_broken(folder, {"imu0/sensor.yaml", "accelerometer_scale"});
 }
 
 TEST(AslReader, ImuGapOutsideTheFramesDoesNotMatter) {

@@ -28,11 +28,11 @@ std::string stamp(int ms) { return std::to_string(AslFolder::kStartNs + ms * 1'0
 TEST(ImuGaps, AreRefusedFromTheFirstFrameToTheLast) {
   constexpr int kLast = 50 * (AslFolder::kFrames - 1);
   for (const auto& [from, to] :
-       {std::pair(-5, 15), {0, 20}, {20, 40}, {kLast - 10, kLast + 10}, {kLast - 20, kLast}}) {
+       {std::pair(-5, 115), {0, 120}, {20, 140}, {kLast - 110, kLast + 10}, {kLast - 120, kLast}}) {
     const AslFolder folder;
     cut(folder, kImuTable, from, to);
     expect_input_error([&] { open_asl(folder.root()); },
-                       {kImuTable, "gap of 20.000 ms", stamp(from), stamp(to)});
+                       {kImuTable, "gap of 120.000 ms", stamp(from), stamp(to)});
   }
 }
 

@@ -30,6 +30,7 @@
   ADD(trust, microbench)       \
   ADD(trust, platforms)        \
   ADD(trust, workload)         \
+  ADD(trust, recording)        \
   ADD(trust, eval)             \
   ADD(trust, trajectory)       \
   ADD(trust, trace)            \

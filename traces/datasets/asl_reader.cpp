@@ -225,6 +225,7 @@ Dataset read_asl(const fs::path& folder) {
   data.imu_model = read_imu_model(require_file(mav0, "imu0/sensor.yaml"));
   read_asl_streams(mav0, data);
   expect_rates(mav0, data);
+  apply_calibration(data);
   return data;
 }
 

@@ -28,6 +28,7 @@ struct CameraModel {
   /// Camera frame (x right, y down, z forward) to body frame: `T_BS` of sensor.yaml [m].
   Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();
   double rate_hz = 0;
+  double time_shift_s = 0;  ///< to be added to the camera's stamps to get the IMU's
   /// The images are what image_preparation.h makes of a camera's, and are used as they are.
   bool prepared = false;
 

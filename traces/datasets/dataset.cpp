@@ -9,13 +9,12 @@
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
 #include "traces/datasets/frame_range.h"
+#include "traces/datasets/imu_gaps.h"
 
 namespace leviosim::traces {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kGapSlack = 1.01;  // recorded stamps jitter by a few hundred nanoseconds
 
 double to_seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -50,20 +49,6 @@ void require_cover(const Dataset& data, double tolerance_s) {
     fail(first, data.imu.front().t_ns, "before the first");
   if (to_seconds(last.t_ns - data.imu.back().t_ns) > tolerance_s)
     fail(last, data.imu.back().t_ns, "after the last");
-}
-
-void require_no_gaps(const Dataset& data, double longest_s) {
-  for (std::size_t i = 1; i < data.imu.size(); ++i) {
-    const std::int64_t from = data.imu[i - 1].t_ns;
-    const std::int64_t to = data.imu[i].t_ns;
-    if (to <= data.frames.front().t_ns || from >= data.frames.back().t_ns) continue;
-    if (to_seconds(to - from) > longest_s * kGapSlack)
-      throw InputError(fmt::format(
-          "{}: IMU gap of {:.3f} ms between {} ns and {} ns; at most {:.3f} ms is allowed "
-          "({:g} Hz sensor)",
-          data.imu_csv.string(), to_seconds(to - from) * 1e3, from, to, longest_s * 1e3,
-          data.imu_model.rate_hz));
-  }
 }
 
 /// Units that were mixed up would look like an odometry that is lost.
@@ -112,13 +97,16 @@ std::vector<std::int64_t> stamps_of(const std::vector<FrameRef>& frames) {
 }
 
 Dataset opened(Dataset data, const OpenOptions& options) {
-  if (options.frames) select_frames(data.frames, *options.frames, data.frames_csv);
+  if (options.frames) {
+    select_frames(data.frames, *options.frames, data.frames_csv);
+    data.first_frame = options.frames->begin;
+  }
   require_images(data.frames, data.frames_csv);
   if (!data.imu.empty()) {
     const double period_s = 1 / data.imu_model.rate_hz;
     require_cover(data, options.imu_edge_periods * period_s);
-    require_no_gaps(data, options.max_imu_gap_periods * period_s);
     require_si_units(data);
+    bridge_imu_gaps(data, options.max_imu_gap_periods);
   }
   disturb(data, options.disturbance);
   return data;

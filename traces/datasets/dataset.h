@@ -61,12 +61,14 @@ struct Dataset {
   std::string pictures = "cam0/data";         ///< what their folder is called
   std::filesystem::path imu_csv = {};         ///< for messages about samples
   std::filesystem::path truth_csv = {};       ///< and about ground truth
+  std::size_t first_frame = 0;                ///< number of the first of the frames, of all
+  std::vector<std::string> notes = {};        ///< what was mended, a sentence each
 };
 
 struct OpenOptions {
   std::optional<FrameRange> frames;  ///< all frames if absent
-  /// The longest gap between IMU samples around the frames, in nominal IMU periods (plus 1 % for
-  /// the jitter of recorded stamps).
+  /// The longest gap between IMU samples around the frames that is left as it is, in nominal IMU
+  /// periods (plus 1 % for the jitter of recorded stamps).
   double max_imu_gap_periods = 3;
   /// How far a frame may lie outside the IMU samples, in nominal IMU periods.
   double imu_edge_periods = 1;

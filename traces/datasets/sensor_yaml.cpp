@@ -106,6 +106,16 @@ CameraModel read_lens(const YamlMap& sensor, const std::vector<std::string>& mod
   return camera;
 }
 
+/// Kalibr's key: t_imu = t_camera + shift. [s]; 0 where it is not given
+double read_time_shift(const YamlMap& sensor) {
+  constexpr double kLongestShiftS = 10;
+  const std::string key = "timeshift_cam_imu";
+  if (!sensor.has(key)) return 0;
+  const double shift_s = sensor.number(key);
+  require_within(sensor, key, {shift_s}, kLongestShiftS);
+  return shift_s;
+}
+
 ImuModel read_noise(const YamlMap& sensor, const std::string& rate) {
   ImuModel imu;
   imu.rate_hz = sensor.positive(rate, kLeastHz, kMostHz);
@@ -125,6 +135,7 @@ CameraModel read_camera_model(const std::filesystem::path& sensor_yaml) {
   camera.T_body_camera = read_extrinsics(sensor);
   camera.rate_hz = sensor.positive("rate_hz", kLeastHz, kMostHz);
   camera.prepared = sensor.flag("prepared", false);
+  camera.time_shift_s = read_time_shift(sensor);
   return camera;
 }
 
@@ -155,26 +166,32 @@ void expect_rates(const std::filesystem::path& folder, const Dataset& data) {
 
 ImuModel read_imu_model(const std::filesystem::path& sensor_yaml) {
   const YamlMap sensor = YamlMap::load(sensor_yaml);
-  const ImuModel imu = read_noise(sensor, "rate_hz");
+  ImuModel imu = read_noise(sensor, "rate_hz");
+  constexpr double kLeastScale = 0.5, kMostScale = 2;
+  const std::string scale = "accelerometer_scale";
+  if (sensor.has(scale)) imu.accel_scale = sensor.positive(scale, kLeastScale, kMostScale);
   if (!read_extrinsics(sensor).isApprox(Eigen::Isometry3d::Identity(), kRotationTolerance))
     sensor.fail("T_BS", "must be the identity: the body frame is taken to be the IMU frame");
   return imu;
 }
 
-CameraModel read_kalibr_camera(const std::filesystem::path& camchain_yaml, double& time_shift_s) {
-  constexpr double kLongestShiftS = 10;
+CameraModel read_kalibr_camera(const std::filesystem::path& camchain_yaml) {
   const YamlMap sensor = YamlMap::load(camchain_yaml).map("cam0");
   CameraModel camera = read_lens(sensor, {"radtan", "equidistant"}, "distortion_coeffs");
   camera.T_body_camera =
       read_transform(sensor, "T_cam_imu", sensor.matrix("T_cam_imu", 4, 4)).inverse();
-  const std::string shift = "timeshift_cam_imu";
-  time_shift_s = sensor.has(shift) ? sensor.number(shift) : 0;
-  if (sensor.has(shift)) require_within(sensor, shift, {time_shift_s}, kLongestShiftS);
+  camera.time_shift_s = read_time_shift(sensor);
   return camera;
 }
 
 ImuModel read_kalibr_imu(const std::filesystem::path& imu_yaml) {
   return read_noise(YamlMap::load(imu_yaml), "update_rate");
+}
+
+void apply_calibration(Dataset& data) {
+  const std::int64_t shift_ns = std::llround(1e9 * data.camera.time_shift_s);
+  for (FrameRef& frame : data.frames) frame.t_ns += shift_ns;
+  for (ImuSample& sample : data.imu) sample.accel *= data.imu_model.accel_scale;
 }
 
 }  // namespace leviosim::traces

@@ -17,7 +17,8 @@ namespace leviosim::traces {
 constexpr int kMostPixels = 1 << 24;
 
 /// Reads cam0/sensor.yaml. Supported: camera_model pinhole, distortion_model radial-tangential and
-/// equidistant. The optional key `prepared: true` is ours: CameraModel::prepared.
+/// equidistant. Optional: `timeshift_cam_imu`, as Kalibr has it, and `prepared: true`, which is
+/// ours: CameraModel::prepared.
 CameraModel read_camera_model(const std::filesystem::path& sensor_yaml);
 
 /// Holds the rates that cam0/sensor.yaml and imu0/sensor.yaml in the folder state against the
@@ -25,12 +26,15 @@ CameraModel read_camera_model(const std::filesystem::path& sensor_yaml);
 void expect_rates(const std::filesystem::path& folder, const Dataset& data);
 
 /// Reads imu0/sensor.yaml. Its T_BS must be the identity: the body frame is the IMU frame.
+/// Optional: `accelerometer_scale`, which is ours: ImuModel::accel_scale.
 ImuModel read_imu_model(const std::filesystem::path& sensor_yaml);
 
-/// The camera cam0 of a chain as Kalibr writes it, without its rate, which the file does not hold;
-/// `time_shift_s` is what has to be added to its time stamps to get the IMU's.
-CameraModel read_kalibr_camera(const std::filesystem::path& camchain_yaml, double& time_shift_s);
+/// The camera cam0 of a chain as Kalibr writes it, without its rate, which the file does not hold.
+CameraModel read_kalibr_camera(const std::filesystem::path& camchain_yaml);
 /// Kalibr's description of an IMU.
 ImuModel read_kalibr_imu(const std::filesystem::path& imu_yaml);
+
+/// Puts the stamps of frames on the IMU's clock and accelerations to scale, as both models say.
+void apply_calibration(Dataset& data);
 
 }  // namespace leviosim::traces

@@ -33,12 +33,11 @@ Dataset read_tum_vi(const fs::path& folder) {
     throw InputError(fmt::format("{} not found in {}; TUM-VI has it beside {}", kImu,
                                  folder.string(), kCameras));
   Dataset data;
-  double shift_s = 0;
-  data.camera = read_kalibr_camera(folder / kCameras, shift_s);
+  data.camera = read_kalibr_camera(folder / kCameras);
   data.imu_model = read_kalibr_imu(folder / kImu);
   read_asl_streams(folder / "mav0", data);
   data.camera.rate_hz = rate_of(stamps_of(data.frames), data.frames_csv);
-  for (FrameRef& frame : data.frames) frame.t_ns += std::llround(1e9 * shift_s);
+  apply_calibration(data);
   for (const char* name : {kCameras, kImu}) data.files.push_back({name, {folder / name}});
   return data;
 }

@@ -75,6 +75,7 @@ struct TimeBands {
 
 struct RunResult {
   std::string profile;
+  std::vector<std::string> notes{};  ///< what was mended of the data, a sentence each
   bool timed = true;  ///< false for --native: no cycles, no latencies
   int cores = 8;
   Hertz cluster_clock;

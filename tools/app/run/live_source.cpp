@@ -161,6 +161,7 @@ std::vector<StageResult> LiveSource::empty_stages() const {
 
 void LiveSource::describe(RunResult& result) const {
   result.profile = profile_.name;
+  result.notes = feed_.data().notes;
   result.frame_period_ns = std::llround(1e9 / feed_.rate_hz());
   if (result.camera) result.camera->fps = feed_.rate_hz();
   result.image_width = feed_.rig().width;

@@ -1,0 +1,60 @@
+// `leviosim recording` as users meet it: what is wrong is named with what to set, and is well then.
+#include <gtest/gtest.h>
+
+#include "tests/support/run_program.h"
+#include "tools/app/table/json.h"
+#include "traces/synthesis/synthetic.h"
+
+namespace leviosim::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::expect_refused;
+using testing::ProgramResult;
+using testing::run_program;
+using traces::testing::TempFolder;
+
+class RecordingCommand : public ::testing::Test {
+ protected:
+  RecordingCommand() {
+    traces::write_synthetic_flight(folder_ / "flight", {.duration_s = 8, .texel_m = 0.01});
+  }
+  ProgramResult check() const {
+    return run_program(folder_.path(), {"recording", (folder_ / "flight").string(), "--quiet"});
+  }
+  void append(const std::string& file, const std::string& line) const {
+    const fs::path path = folder_ / "flight/mav0" / file;
+    outputs::write_file_atomically(path, base::read_text_file(path) + line + '\n');
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(RecordingCommand, FindsNothingAgainstAFlightThatIsWell) {
+  const ProgramResult result = check();
+  EXPECT_EQ(result.status, 0) << result.out << result.err;
+  for (const char* part : {"verdict: nothing speaks against it", "161, one every 50.00 ms",
+                           "the accelerometer reads 9.8"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << '\n' << result.out;
+  const ProgramResult json = run_program(
+      folder_.path(), {"recording", (folder_ / "flight").string(), "--quiet", "--json"});
+  EXPECT_EQ(Json::parse(json.out).at("rows").size(), 4u) << json.out;
+}
+
+TEST_F(RecordingCommand, SaysWhatAnAccelerometerReadsAtRestAndWhatToSet) {
+  append("imu0/sensor.yaml", "accelerometer_scale: 1.03");
+  const ProgramResult wrong = check();
+  EXPECT_EQ(wrong.status, 1) << wrong.err;
+  const std::string advice = "imu0/sensor.yaml: accelerometer_scale: 1.0";
+  EXPECT_NE(wrong.out.find("the accelerometer reads 10.1"), std::string::npos) << wrong.out;
+  EXPECT_NE(wrong.out.find(advice), std::string::npos) << wrong.out;
+}
+
+TEST_F(RecordingCommand, RefusesWhatIsNone) {
+  expect_refused(run_program(folder_.path(), {"recording"}), {"DIR is missing"});
+  expect_refused(run_program(folder_.path(), {"recording", folder_.path().string()}),
+                 {"no recording of a known format"});
+}
+
+}  // namespace
+}  // namespace leviosim::tools
