@@ -24,6 +24,7 @@ tests=(
   chromium                                                    # pages (120 MB, half a minute)
   libbenchmark-dev libsystemc-dev                             # benchmarks and their yardstick
   python3-dev pybind11-dev python3-numpy                      # the Python module (preset python)
+  python3-pil                                                 # pictures, for tools/research
 )
 compilers=(clang libclang-rt-14-dev clang-tools  # tools/check_reproducible.sh; libFuzzer (tools/fuzz.sh); check_counting.py
   valgrind)                                      # tools/ci/host_work.sh

@@ -34,7 +34,6 @@
   ADD(trust, eval)             \
   ADD(trust, trajectory)       \
   ADD(trust, trace)            \
-  ADD(trust, image_statistics) \
   ADD(trust, doctor)
 
 namespace leviosim::tools {
