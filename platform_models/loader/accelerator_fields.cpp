@@ -65,11 +65,11 @@ struct Number {
 };
 const std::array<Number, 4> kNumbers = {{
     {"start_up", &kCycles, 0, kMaxCycles, &AcceleratorConfig::start_up,
-     "instructions of the calling core"},
+     "instructions of the calling core per call"},
     {"latency", &kCycles, 0, kMaxCycles, &AcceleratorConfig::latency,
      "cycles of a call besides those of its items"},
     {"items_per_cycle", &kRatio, kLeastRate, kMaxRate, &AcceleratorConfig::items_per_cycle,
-     "throughput of a unit in items of"},
+     "items per cycle of a unit"},
     {"l1_words", &kRatio, 0, kMaxUnits, &AcceleratorConfig::l1_words,
      "words of L1 that a unit moves per cycle while it works"},
 }};
@@ -89,7 +89,7 @@ Field field_of(const Side& side, const work::OffloadKindInfo& kernel, const Numb
 Field units_of(const Side& side, const work::OffloadKindInfo& kernel) {
   const std::size_t k = work::index(kernel.kernel);
   Field field = row(section_of(side, kernel) + ".units", kUnits, 1, kMaxUnits,
-                    fmt::format("accelerators for: {}", kernel.description));
+                    fmt::format("number of accelerators: {}", kernel.description));
   const auto of = side.of;
   field.set = [=](ChipConfig& chip, double value) { of(chip)[k].units = static_cast<int>(value); };
   field.get = [=](const ChipConfig& chip) {
@@ -115,13 +115,13 @@ Field banded(Field field, std::size_t k, Range ChipConfig::*range, All all) {
 
 Field energy_of(const Side& side, const work::OffloadKindInfo& kernel) {
   return banded(row(section_of(side, kernel) + ".energy", kEnergy, 0, kMaxEnergy,
-                    fmt::format("of a unit for an item ({}), memory aside", kernel.item)),
+                    fmt::format("energy of a unit for an item ({}), memory aside", kernel.item)),
                 work::index(kernel.kernel), &ChipConfig::energy, side.energies);
 }
 
 Field area_of(const Side& side, const work::OffloadKindInfo& kernel) {
   return banded(row(section_of(side, kernel) + ".area", kGates, 0, kMaxGates,
-                    fmt::format("size of a unit; unknown unless said: {}", kernel.description)),
+                    fmt::format("area of a unit; unknown if not given: {}", kernel.description)),
                 work::index(kernel.kernel), &ChipConfig::area, side.areas);
 }
 

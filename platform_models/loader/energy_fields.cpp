@@ -1,7 +1,10 @@
 #include "platform_models/loader/energy_fields.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -25,7 +28,7 @@ constexpr double kMinVoltage = 0.1;  // volts
 constexpr double kMaxVoltage = 10;
 
 Field row(const char* path, const Dimension& dimension, double min, double max,
-          const char* description) {
+          std::string description) {
   Field field;
   field.path = path;
   field.record = path;
@@ -34,7 +37,7 @@ Field row(const char* path, const Dimension& dimension, double min, double max,
   field.min = min;
   field.max = max;
   field.required = false;
-  field.description = description;
+  field.description = std::move(description);
   return field;
 }
 
@@ -44,8 +47,9 @@ Field voltage(const char* path, const char* description) {
 Field clock(const char* path, const char* description) {
   return row(path, kFrequency, kMinClock, kMaxClock, description);
 }
-Field event(const char* path, const char* description) {
-  return row(path, kEnergy, 0, kMaxEvent, description);
+/// @param what  has this energy
+Field event(const char* path, std::string_view what) {
+  return row(path, kEnergy, 0, kMaxEvent, fmt::format("energy of {}", what));
 }
 Field power(const char* path, const char* description) {
   return row(path, kPower, 0, kMaxPower, description);
@@ -83,17 +87,27 @@ Field of_energy(Field field, Path... path) {
   return banded<&ChipConfig::energy>(std::move(field), path...);
 }
 template <class Member>
-Field of_area(const char* path, const Dimension& dimension, double max, const char* description,
+Field of_area(const char* path, const Dimension& dimension, double max, std::string description,
               Member member) {
-  return banded<&ChipConfig::area>(row(path, dimension, 0, max, description), member);
+  return banded<&ChipConfig::area>(row(path, dimension, 0, max, std::move(description)), member);
+}
+/// @param what  has this area, in thousands of gate equivalents
+template <class Member>
+Field gates(const char* path, std::string_view what, Member member) {
+  return of_area(path, kGates, kMaxGates, fmt::format("area of {}", what), member);
+}
+/// @param what  has this area on silicon
+template <class Member>
+Field silicon(const char* path, std::string_view what, Member member) {
+  return of_area(path, kArea, kMaxArea, fmt::format("area of {}", what), member);
 }
 
 std::vector<Field> supply_fields() {
   return {
-      of_supply(voltage("supply.voltage", "supply of cluster, controller and memories"),
+      of_supply(voltage("supply.voltage", "supply voltage of cluster, controller and memories"),
                 &S::voltage),
       of_supply(row("supply.step", kVoltage, 1e-3, kMaxVoltage,
-                    "granularity of the supply, counted from its lowest voltage"),
+                    "step of the supply voltage, counted from its lowest one"),
                 &S::step),
       of_supply(voltage("supply.lowest.voltage", "lowest voltage of the supply"), &S::lowest,
                 &sim::OperatingPoint::voltage),
@@ -108,7 +122,7 @@ std::vector<Field> supply_fields() {
 
 std::vector<Field> cluster_energy_fields() {
   return {
-      of_energy(event("energy.core.instruction", "an instruction, with its fetch"), &E::core,
+      of_energy(event("energy.core.instruction", "an instruction with its fetch"), &E::core,
                 &E::Core::instruction),
       of_energy(event("energy.core.f32_operation",
                       "an operation of a floating-point unit, besides its instruction"),
@@ -122,12 +136,12 @@ std::vector<Field> cluster_energy_fields() {
       of_energy(power("energy.l1.bank_leakage", "leakage of a bank of L1"), &E::l1,
                 &E::L1::bank_leakage),
       of_energy(event("energy.dma.transfer_cycle",
-                      "DMA, in a cycle (of the controller's clock) of a transfer"),
+                      "the DMA in a cycle of the controller's clock during a transfer"),
                 &E::dma, &E::Dma::transfer_cycle),
-      of_energy(event("energy.dma.cycle", "DMA, in a cycle of the cluster's clock"), &E::dma,
+      of_energy(event("energy.dma.cycle", "the DMA in a cycle of the cluster's clock"), &E::dma,
                 &E::Dma::cycle),
       of_energy(power("energy.dma.leakage", "leakage of the DMA"), &E::dma, &E::Dma::leakage),
-      of_energy(event("energy.cluster.cycle", "rest of the cluster, in a cycle of its clock"),
+      of_energy(event("energy.cluster.cycle", "the rest of the cluster in a cycle of its clock"),
                 &E::cluster, &E::Cluster::cycle),
       of_energy(power("energy.cluster.leakage", "leakage of the rest of the cluster"), &E::cluster,
                 &E::Cluster::leakage),
@@ -141,24 +155,25 @@ std::vector<Field> soc_energy_fields() {
   return {
       of_energy(event("energy.l2.access", "an access to L2 of up to 32 bits"), &E::l2,
                 &E::L2::access),
-      of_energy(event("energy.soc.cycle", "rest of the chip, in a cycle of the controller's clock"),
-                &E::soc, &E::Soc::cycle),
-      of_energy(power("energy.soc.static", "rest of the chip, whatever its clock"), &E::soc,
+      of_energy(
+          event("energy.soc.cycle", "the rest of the chip in a cycle of the controller's clock"),
+          &E::soc, &E::Soc::cycle),
+      of_energy(power("energy.soc.static", "power of the rest of the chip at any clock"), &E::soc,
                 &E::Soc::static_power),
   };
 }
 
 std::vector<Field> energy_by_size_fields() {
   return {
-      of_energy(event("energy.by_size.gate_cycle", "a thousand gates, in a cycle of their clock"),
+      of_energy(event("energy.by_size.gate_cycle", "a thousand gates in a cycle of their clock"),
                 &E::by_size, &E::BySize::gate_cycle),
-      of_energy(
-          row("energy.by_size.gated", kRatio, 0, 1, "share of it while a core's clock is stopped"),
-          &E::by_size, &E::BySize::gated),
-      of_energy(event("energy.by_size.bank_cycle", "a bank of L1 or block of L2, in a cycle"),
+      of_energy(row("energy.by_size.gated", kRatio, 0, 1,
+                    "share of a core's gate_cycle energy while its clock is stopped"),
+                &E::by_size, &E::BySize::gated),
+      of_energy(event("energy.by_size.bank_cycle", "a bank of L1 or block of L2 in a cycle"),
                 &E::by_size, &E::BySize::bank_cycle),
       of_energy(
-          event("energy.by_size.stalled_cycle", "a core that waits with its clock on, in a cycle"),
+          event("energy.by_size.stalled_cycle", "a core that waits with its clock on in a cycle"),
           &E::by_size, &E::BySize::stalled_cycle),
       of_energy(power("energy.by_size.gate_leakage", "leakage of a thousand gates"), &E::by_size,
                 &E::BySize::gate_leakage),
@@ -167,66 +182,59 @@ std::vector<Field> energy_by_size_fields() {
       of_energy(power("energy.by_size.l2_leakage", "leakage of a KiB of L2"), &E::by_size,
                 &E::BySize::l2_leakage),
       of_energy(row("energy.by_size.leakage_exponent", kRatio, 0, 10,
-                    "power of the voltage with which leakage grows"),
+                    "exponent of the voltage in leakage"),
                 &E::by_size, &E::BySize::leakage_exponent),
   };
 }
 
 std::vector<Field> technology_fields() {
   return {
-      of_area("area.gate", kArea, kMaxArea, "a thousand gate equivalents, placed", &A::gate),
-      of_area("area.sram_cut", kArea, kMaxArea, "a memory block, whatever its size", &A::sram_cut),
-      of_area("area.sram_bit", kArea, kMaxArea, "and each of its bits", &A::sram_bit),
-      of_area("area.latch_bit", kArea, kMaxArea, "a bit of a memory of latches", &A::latch_bit),
+      silicon("area.gate", "a thousand gate equivalents, placed", &A::gate),
+      silicon("area.sram_cut", "a memory block, whatever its size", &A::sram_cut),
+      silicon("area.sram_bit", "a bit of a memory block, in addition", &A::sram_bit),
+      silicon("area.latch_bit", "a bit of a memory of latches", &A::latch_bit),
       of_area("area.l2_cut", kSize, kMaxBytes, "size of a memory block of L2", &A::l2_cut),
   };
 }
 
 std::vector<Field> logic_fields() {
   return {
-      of_area("area.core", kGates, kMaxGates, "a core without extensions and floating-point unit",
-              &A::core),
-      of_area("area.xpulp", kGates, kMaxGates, "what a core with Xpulp has besides", &A::xpulp),
-      of_area("area.fpu", kGates, kMaxGates, "a floating-point unit without divider", &A::fpu),
-      of_area("area.divider", kGates, kMaxGates, "a unit for quotients and square roots",
-              &A::divider),
-      of_area("area.fpu_crosspoint", kGates, kMaxGates,
-              "network of shared units, for a core and a unit that it may use", &A::fpu_crosspoint),
-      of_area("area.memory_crosspoint", kGates, kMaxGates,
-              "networks of L1 and L2, for a master and a bank", &A::memory_crosspoint),
-      of_area("area.l1_masters", kUnits, kMaxPorts, "masters of L1 besides cores and DMA",
+      gates("area.core", "a core without extensions and floating-point unit", &A::core),
+      gates("area.xpulp", "the Xpulp extensions of a core", &A::xpulp),
+      gates("area.fpu", "a floating-point unit without divider", &A::fpu),
+      gates("area.divider", "a unit for quotients and square roots", &A::divider),
+      gates("area.fpu_crosspoint",
+            "the network of shared units, for a core and a unit that it may use",
+            &A::fpu_crosspoint),
+      gates("area.memory_crosspoint", "the networks of L1 and L2, for a master and a bank",
+            &A::memory_crosspoint),
+      of_area("area.l1_masters", kUnits, kMaxPorts, "number of masters of L1 besides cores and DMA",
               &A::l1_masters),
-      of_area("area.l2_masters", kUnits, kMaxPorts, "masters of L2", &A::l2_masters),
-      of_area("area.private_cache", kGates, kMaxGates, "control of a private instruction cache",
-              &A::private_cache),
-      of_area("area.shared_cache", kGates, kMaxGates, "control of the shared instruction cache",
-              &A::shared_cache),
-      of_area("area.cache_way", kGates, kMaxGates,
-              "comparison and choice, for each way of a bank of an instruction cache",
-              &A::cache_way),
-      of_area("area.refill_buffer", kGates, kMaxGates,
-              "for each line that the shared instruction cache can await", &A::refill_buffer),
-      of_area("area.dma", kGates, kMaxGates, "control of the cluster's DMA", &A::dma),
-      of_area("area.dma_byte", kGates, kMaxGates, "its data path, for each byte per cycle",
-              &A::dma_byte),
-      of_area("area.dma_command", kGates, kMaxGates, "for each transfer that may be under way",
-              &A::dma_command),
-      of_area("area.int64_unit", kGates, kMaxGates, "a unit for 64-bit integers", &A::int64_unit),
-      of_area("area.controller_bus_byte", kGates, kMaxGates,
-              "the controller's bus for code, for each byte per cycle", &A::controller_bus_byte),
-      of_area("area.event_unit", kGates, kMaxGates, "the event unit, for each core",
-              &A::event_unit),
-      of_area("area.cluster_bus_byte", kGates, kMaxGates,
-              "bus from the cluster to L2, for each byte per cycle", &A::cluster_bus_byte),
-      of_area("area.cluster_rest", kGates, kMaxGates,
-              "other buses, clock crossing, control of the cluster", &A::cluster_rest),
-      of_area("area.not_simulated", kGates, kMaxGates,
-              "accelerators of the cluster that are not simulated", &A::not_simulated),
-      of_area("area.controller_rest", kGates, kMaxGates,
-              "what the controller has besides core, floating-point unit and divider",
-              &A::controller_rest),
-      of_area("area.soc_rest", kGates, kMaxGates, "peripherals and control of the chip",
-              &A::soc_rest),
+      of_area("area.l2_masters", kUnits, kMaxPorts, "number of masters of L2", &A::l2_masters),
+      gates("area.private_cache", "the control of a private instruction cache", &A::private_cache),
+      gates("area.shared_cache", "the control of the shared instruction cache", &A::shared_cache),
+      gates("area.cache_way",
+            "comparison and choice for each way of a bank of an instruction cache", &A::cache_way),
+      gates("area.refill_buffer",
+            "a refill buffer, for each line that the shared instruction cache can await",
+            &A::refill_buffer),
+      gates("area.dma", "the control of the cluster's DMA", &A::dma),
+      gates("area.dma_byte", "the DMA's data path, for each byte per cycle", &A::dma_byte),
+      gates("area.dma_command", "the DMA's queue, for each transfer that may be under way",
+            &A::dma_command),
+      gates("area.int64_unit", "a unit for 64-bit integers", &A::int64_unit),
+      gates("area.controller_bus_byte", "the controller's bus for code, for each byte per cycle",
+            &A::controller_bus_byte),
+      gates("area.event_unit", "the event unit, for each core", &A::event_unit),
+      gates("area.cluster_bus_byte", "the bus from the cluster to L2, for each byte per cycle",
+            &A::cluster_bus_byte),
+      gates("area.cluster_rest", "the cluster's other buses, clock crossing and control",
+            &A::cluster_rest),
+      gates("area.not_simulated", "accelerators of the cluster that are not simulated",
+            &A::not_simulated),
+      gates("area.controller_rest", "the controller besides core, floating-point unit and divider",
+            &A::controller_rest),
+      gates("area.soc_rest", "peripherals and control of the chip", &A::soc_rest),
   };
 }
 
@@ -246,8 +254,8 @@ std::vector<Field> area_fields() {
 
 std::vector<Field> energy_fields() {
   std::vector<Field> fields = supply_fields();
-  fields.push_back(
-      of_energy(voltage("energy.voltage", "supply for which the section holds"), &E::voltage));
+  fields.push_back(of_energy(
+      voltage("energy.voltage", "supply voltage for which the section holds"), &E::voltage));
   for (std::vector<Field>& part :
        std::array{cluster_energy_fields(), soc_energy_fields(), energy_by_size_fields()})
     for (Field& field : part) fields.push_back(std::move(field));

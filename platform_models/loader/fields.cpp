@@ -140,9 +140,8 @@ void add_core(Table& table, const CoreSection& section) {
   const auto key = [&](std::string_view name) { return fmt::format("{}.{}", section.path, name); };
   table.add_of_cores(
       section,
-      optional(quantity(
-          key("unmeasured_instructions"), kRatio, 0.1, 10,
-          "instructions executed per one accounted for by ops, in code that was not measured")),
+      optional(quantity(key("unmeasured_instructions"), kRatio, 0.1, 10,
+                        "ratio of executed to counted instructions in code that was not measured")),
       [](auto& core) -> auto& { return core.unmeasured_instructions; });
   table.add_of_cores(
       section,
@@ -151,7 +150,8 @@ void add_core(Table& table, const CoreSection& section) {
       [](auto& core) -> auto& { return core.load_use_fraction; });
   table.add_of_cores(
       section,
-      quantity(key("load_use_stall"), kCycles, 0, kMaxCost, "cycles that such a load waits"),
+      quantity(key("load_use_stall"), kCycles, 0, kMaxCost,
+               "cycles that a load waits whose result the next instruction uses"),
       [](auto& core) -> auto& { return core.load_use_stall; });
   table.add_of_cores(
       section,
@@ -167,11 +167,12 @@ void add_cores_of_cluster(Table& table) {
                "clock of the cluster's cores, L1, DMA and event unit"),
       [](auto& chip) -> auto& { return chip.cluster.clock; });
   table.add(
-      quantity("cluster.workers", kCores, 1, kMaxParts, "worker cores, besides the master"),
+      quantity("cluster.workers", kCores, 1, kMaxParts,
+               "number of worker cores, without the master"),
       [](auto& chip) -> auto& { return chip.cluster.workers; });
   table.add(
       quantity("cluster.max_workers", kCores, 1, kMaxParts,
-               "workers that the event unit can serve"),
+               "largest number of workers that the event unit can serve"),
       [](auto& chip) -> auto& { return chip.cluster.max_workers; });
   add_core(table, {"cluster.core", true, false});
 }
@@ -179,25 +180,27 @@ void add_cores_of_cluster(Table& table) {
 void add_fpu(Table& table) {
   table.add(
       quantity("cluster.fpu.units", kUnits, 0, kMaxParts,
-               "floating-point units that the cluster's cores share"),
+               "number of floating-point units that the cluster's cores share"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.units; });
   table.add(
       choice("cluster.fpu.mapping", {"fixed", "dynamic"},
-             "unit that serves a core: fixed, core c uses unit c mod units; dynamic, any"),
+             "mapping of cores to floating-point units: fixed, core c uses unit c mod units; "
+             "dynamic, any"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.mapping; });
   table.add(
       quantity("cluster.fpu.dividers", kUnits, 0, kMaxParts,
-               "divide and square-root units that the cluster's cores share"),
+               "number of divide and square-root units that the cluster's cores share"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.dividers; });
   table.add(
       quantity("cluster.fpu.int64_units", kUnits, 0, kMaxParts,
-               "units for 64-bit integers that the cluster's cores share, mapped as the others"),
+               "number of units for 64-bit integers that the cluster's cores share, mapped as the "
+               "others"),
       [](auto& chip) -> auto& { return chip.cluster.fpu.int64_units; });
   table.add(
       optional(quantity(
           "cluster.fpu.collisions", kRatio, 0, 10,
-          "chance collisions at these units and in queues of dividers and accelerators, over those "
-          "at any phase; 0 unless said: cores find their turns")),
+          "ratio of collisions at shared units, dividers and accelerators to those of requests at "
+          "random phases; 0 if not given: cores find their turns")),
       [](auto& chip) -> auto& { return chip.cluster.fpu.collisions; });
 }
 
@@ -206,18 +209,21 @@ template <class Caches>
 void add_instruction_cache(Table& table, const std::string& path, const std::string& whose,
                            Caches caches) {
   table.add(
-      quantity(path + ".line", kSize, 1, 1024, "bytes of code fetched at once"),
+      quantity(path + ".line", kSize, 1, 1024,
+               "line of the instruction caches: bytes of code fetched at once"),
       [caches](auto& chip) -> auto& { return caches(chip).line; });
   table.add(
-      quantity(path + ".size", kSize, 0, kMaxSize, "private instruction cache of " + whose),
+      quantity(path + ".size", kSize, 0, kMaxSize,
+               "size of the private instruction cache of " + whose),
       [caches](auto& chip) -> auto& { return caches(chip).worker; });
   table.add(
       quantity(path + ".refill_width", kRate, kLeastTime, 1024,
                "bytes of a line that come from L2 per cycle"),
       [caches](auto& chip) -> auto& { return caches(chip).refill_width; });
   table.add(
-      optional(quantity(path + ".ways", kUnits, 1, kMaxParts,
-                        "lines of a set of these caches, replaced at random; 4 unless said")),
+      optional(quantity(
+          path + ".ways", kUnits, 1, kMaxParts,
+          "associativity of these caches: lines of a set, replaced at random; 4 if not given")),
       [caches](auto& chip) -> auto& { return caches(chip).ways; });
 }
 
@@ -226,7 +232,7 @@ template <class Caches>
 void add_code_size(Table& table, const std::string& path, Caches caches) {
   table.add(
       optional(quantity(path + ".code_size", kRatio, 0.1, 10,
-                        "bytes of code for each one that was measured; 1 unless said")),
+                        "ratio of the bytes of code to those that were measured; 1 if not given")),
       [caches](auto& chip) -> auto& { return caches(chip).code_size; });
 }
 
@@ -236,10 +242,11 @@ void add_code_of_cluster(Table& table) {
   add_instruction_cache(table, path, "a worker; 0 for none", caches);
   table.add(
       quantity(path + ".master_size", kSize, 0, kMaxSize,
-               "private instruction cache of the master"),
+               "size of the private instruction cache of the master"),
       [](auto& chip) -> auto& { return chip.cluster.icache.master; });
   table.add(
-      quantity(path + ".shared_size", kSize, 1, kMaxSize, "instruction cache that the cores share"),
+      quantity(path + ".shared_size", kSize, 1, kMaxSize,
+               "size of the instruction cache that the cores share"),
       [](auto& chip) -> auto& { return chip.cluster.icache.shared; });
   table.add(
       quantity(path + ".shared_banks", kBanks, 1, kMaxParts,
@@ -279,12 +286,12 @@ void add_l1_and_dma(Table& table) {
       [](auto& chip) -> auto& { return chip.cluster.l1.size; });
   table.add(
       quantity("cluster.l1.banks", kBanks, 1, kMaxParts,
-               "word-interleaved banks of L1, a power of two"),
+               "number of word-interleaved banks of L1, a power of two"),
       [](auto& chip) -> auto& { return chip.cluster.l1.banks; });
   table.add(
       optional(quantity("cluster.l1.stream_conflicts", kRatio, 0, 10,
-                        "bank conflicts among streams of the cores, over those of as many "
-                        "scattered accesses; 0 unless said: streams walk in step")),
+                        "ratio of bank conflicts among the cores' streams to those of as many "
+                        "scattered accesses; 0 if not given: streams walk in step")),
       [](auto& chip) -> auto& { return chip.cluster.l1.stream_conflicts; });
   table.add(
       quantity("cluster.dma.programming", kCycles, 0, kMaxCost,
@@ -292,25 +299,24 @@ void add_l1_and_dma(Table& table) {
       [](auto& chip) -> auto& { return chip.cluster.dma.programming; });
   table.add(
       quantity("cluster.dma.first_data", kCycles, 0, kMaxCost,
-               "cycles until the first data of a transfer arrive"),
+               "cycles from the start of a transfer until its first data arrive"),
       [](auto& chip) -> auto& { return chip.cluster.dma.first_data; });
   table.add(
       quantity("cluster.dma.bytes_per_cycle", kRate, kLeastTime, 1e6,
-               "payload of a transfer per cluster cycle"),
+               "bytes of a transfer per cluster cycle"),
       [](auto& chip) -> auto& { return chip.cluster.dma.bytes_per_cycle; });
   table.add(
       quantity("cluster.dma.completion", kCycles, 0, kMaxCost,
                "cycles from the last data until the waiting core goes on"),
       [](auto& chip) -> auto& { return chip.cluster.dma.completion; });
   table.add(
-      optional(
-          quantity("cluster.dma.commands", kUnits, 1, kMaxParts,
-                   "transfers that are under way at most; the programming core waits for room")),
+      optional(quantity("cluster.dma.commands", kUnits, 1, kMaxParts,
+                        "transfers under way, at most; the programming core waits for room")),
       [](auto& chip) -> auto& { return chip.cluster.dma.commands; });
   table.add(
       optional(quantity("cluster.dma.call", kCycles, 0, kMaxCost,
                         "cycles of the programming core once a transfer has begun, the rest of the "
-                        "call of the API; 0 unless said")),
+                        "call of the API; 0 if not given")),
       [](auto& chip) -> auto& { return chip.cluster.dma.call; });
 }
 
@@ -334,7 +340,7 @@ void add_events(Table& table) {
   table.add(
       optional(quantity("cluster.events.fork_again", kRatio, 0, 1,
                         "share of fork_master and fork_worker that a fork right after another one "
-                        "takes; 1 unless said")),
+                        "takes; 1 if not given")),
       [](auto& chip) -> auto& { return chip.cluster.events.fork_again; });
 }
 
@@ -345,7 +351,7 @@ void add_controller(Table& table) {
       [](auto& chip) -> auto& { return chip.controller.clock; });
   table.add(
       optional(choice("controller.runs_on", {"own_core", "cluster_core"},
-                      "where the controller's work runs: on a core of its own, or in turns with "
+                      "core that does the controller's work: one of its own, or in turns with "
                       "the cluster's work on the only core of the chip")),
       [](auto& chip) -> auto& { return chip.controller.shares_core; });
   add_core(table, {"controller.core", false, true});
@@ -355,15 +361,15 @@ void add_controller(Table& table) {
 void add_external_memory(Table& table) {
   table.add(
       optional(quantity("controller.external.latency", kTime, 0, 1,
-                        "time of a transfer from or to external memory besides its data")),
+                        "time of a transfer from or to external memory without its data")),
       [](auto& chip) -> auto& { return chip.controller.external.latency_seconds; });
   table.add(
       optional(quantity("controller.external.rate", kThroughput, 0, 1e12,
-                        "data of a transfer from or to external memory per time")),
+                        "bandwidth of transfers from and to external memory")),
       [](auto& chip) -> auto& { return chip.controller.external.bytes_per_second; });
   table.add(
       optional(quantity("controller.external.burst", kSize, 0, 1e6,
-                        "least that a transfer from or to external memory moves")),
+                        "smallest amount that a transfer from or to external memory moves")),
       [](auto& chip) -> auto& { return chip.controller.external.burst; });
 }
 

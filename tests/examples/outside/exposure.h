@@ -48,7 +48,8 @@ inline Workload workload() {
   exposure.description = "mean grey level of each frame";
   exposure.stages = {"exposure"};
   exposure.parameters = {vio::other_parameter("workload.row_step", vio::Parameter::Kind::whole,
-                                              "rows", 1, 8, 1, "from one row to the next")};
+                                              "rows", 1, 8, 1,
+                                              "distance from one sampled row to the next")};
   exposure.code = exposure_code();
   exposure.begin = [](const tools::RunRequest& request) {
     const int step = static_cast<int>(tools::value_of(request, "workload.row_step"));
