@@ -1,4 +1,5 @@
-// What users read of a parameter begins with what it is: a noun, to which its unit belongs.
+// What users read of a parameter or a statistic begins with what it is: a noun, to which its unit
+// belongs.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -7,6 +8,9 @@
 #include <vector>
 
 #include "platform_models/loader/fields.h"
+#include "tests/tools/example_run.h"
+#include "tools/app/record/statistics.h"
+#include "tools/app/result/summary.h"
 #include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
@@ -38,6 +42,15 @@ TEST(HelpTexts, OfParametersOfChipsBeginWithANoun) {
   const std::vector<platform::Field> fields = platform::all_fields();
   ASSERT_GT(fields.size(), 100u);
   for (const platform::Field& field : fields) expect_noun_first(field.path, field.description);
+}
+
+TEST(HelpTexts, OfStatisticsBeginWithANoun) {
+  const RunFigures figures = figures_of(testing::example_run());
+  ASSERT_GT(figures.statistics.size(), 100u);
+  for (const Statistic& statistic : figures.statistics)
+    if (statistic.name.find(".breakdown.") ==
+        std::string::npos)  // a cause: "the master works alone"
+      expect_noun_first(statistic.name, statistic.description);
 }
 
 }  // namespace

@@ -81,21 +81,22 @@ Command add_budget_command(CLI::App& app, const Words&) {
   const auto options = std::make_shared<BudgetOptions>();
   command->add_option(
       "ACTION", options->action,
-      "record: a baseline; init: a first budget; tighten: a budget without the room that "
-      "is not used; accept: one in which what is missed may be, for a while");
+      "record: a baseline; init: a first budget; tighten: a budget whose limits lie near "
+      "the run; accept: a budget whose missed limits are allowed until a day");
   command->add_option("RUN", options->run, "run folder, or a work trace to replay");
   add_gate_options(*command, options->gate);
   const TextOptions add{*command};
   add("--margin", options->margin, "PERCENT",
-      "init: what limits leave; accept: what the new bound leaves [5 %]");
-  add("--slack", options->slack, "PERCENT", "tighten: what limits leave at most [2 %]");
+      "init, accept: distance of the new limits from the run's values [5 %]");
+  add("--slack", options->slack, "PERCENT",
+      "tighten: largest distance of a limit from the run's value [2 %]");
   command
       ->add_option("--limit", options->limits,
                    "accept: the limit that may be missed, by its title; may be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  add("--reason", options->reason, "TEXT", "accept: why");
-  add("--until", options->until, "DATE", "accept: the last day");
+  add("--reason", options->reason, "TEXT", "accept: reason, which the budget keeps");
+  add("--until", options->until, "DATE", "accept: last day, such as 2026-12-24");
   add_record_options(*command, *options);
   add_examples(*command, {"leviosim budget record recorded >baseline.json",
                           "leviosim budget init recorded --margin '3 %' >first.yaml",

@@ -144,10 +144,11 @@ Command add_check_command(CLI::App& app, const Words&) {
   add("--markdown", options->markdown, "FILE.md",
       "comment for a pull request, or the summary of a job, to write");
   add("--history", options->history, "FILE",
-      "runs before (leviosim history add): the last is the baseline, unless there is "
-      "another, and slow drift is found");
-  add("--branch", options->branch, "NAME", "of the history [all]");
-  add("--commit", options->commit, "ID", "of the run, whose own runs are no history [git: HEAD]");
+      "earlier runs (leviosim history add): the last one is the baseline if --baseline names "
+      "none, and slow drift over them is found");
+  add("--branch", options->branch, "NAME", "branch of the history [all]");
+  add("--commit", options->commit, "ID",
+      "commit of the run, which the history leaves out [git: HEAD]");
   add_report_option(*command, options->report);
   command->add_flag("--force", options->force, "replace these files");
   add("--annotations", options->annotations, "github|gitlab",

@@ -160,7 +160,7 @@ Command add_compare_command(CLI::App& app, const Words&) {
       ->allow_extra_args(false);
   const TextOptions add{*command};
   add("--allow", options->allow, "data,frames,profile,seed,size",
-      "differences of the input that are meant");
+      "differences of the input that are intended");
   add("--format", options->format, "FORMAT", "text, markdown, json or csv [text]");
   command->add_flag("--all", options->all, "all tables in place of the summary");
   add_json_option(*command, options->json);

@@ -223,7 +223,7 @@ Command add_doctor_command(CLI::App& app, const Words&) {
   const auto options = std::make_shared<DoctorOptions>();
   command
       ->add_option("FOLDER", options->folders,
-                   "where recordings are looked for [$LEVIOSIM_DATA and here]")
+                   "folders in which recordings are looked for [$LEVIOSIM_DATA and here]")
       ->take_all();
   add_examples(*command, {"leviosim doctor", "leviosim doctor flight"});
   add_json_option(*command, options->json);

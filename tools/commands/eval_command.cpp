@@ -120,14 +120,15 @@ void add_eval_options(CLI::App& command, EvalOptions& options) {
   add("--also", options.also, "EST",
       "another estimate of the same flight, repeatable: a row for each, side by side");
   add("--align", options.align, "KIND",
-      "what is aligned first: se3, sim3, posyaw (gravity is known, z up) or none [se3]");
+      "alignment to the truth: se3, sim3, posyaw (gravity is known, z up) or none [se3]");
   add("--max-dt", options.max_dt, "TIME",
-      "to the nearest true sample of a matched pose: 10ms, 0.01s, or a number of ms [10ms]");
+      "largest time from a pose to the nearest true one: 10ms, 0.01s, or a number of ms [10ms]");
   add("--relative", options.relative, "M",
       "lengths of sub-trajectories in metres: 10,40; repeatable [40]");
   add("--expected", options.expected, "N",
-      "completion is of N poses, e.g. the frames fed in [of the ground truth's duration]");
-  add("--format", options.format, "FORMAT", "of both files: tum, euroc or kitti [as they look]");
+      "poses of a complete trajectory, such as the frames fed in [those of the truth's duration]");
+  add("--format", options.format, "FORMAT",
+      "format of both files: tum, euroc or kitti [as they look]");
   add("--times", options.times, "FILE", "time stamps of KITTI files, seconds, one a line");
   command
       .add_option("--json", options.json,
@@ -210,9 +211,9 @@ Json figures(const traces::TrajectoryPair& pair, const EvalRequest& request,
              const Accuracy& accuracy) {
   StatisticList list;
   add_ate(list, accuracy.evaluation, attitude_errors(accuracy.evaluation));
-  list.add("accuracy.longest_gap", "s", "between successive matched poses",
+  list.add("accuracy.longest_gap", "s", "longest time between successive matched poses",
            value_of(accuracy.evaluation.longest_gap_s));
-  list.add("accuracy.scale", "1", "that the alignment applied to the estimate",
+  list.add("accuracy.scale", "1", "scale that the alignment applied to the estimate",
            rounded(accuracy.evaluation.alignment.scale));
   for (const RelativeErrors& errors : accuracy.relative)
     add_relative(list, accuracy.evaluation, errors);

@@ -189,15 +189,17 @@ Command add_history_command(CLI::App& app, const Words&) {
   command->add_option(
       "RUN", options->run,
       "add: run folder, work trace to replay, baseline, or CSV file of measured cycles");
-  add("--file", options->file, "FILE", "the history [history.jsonl]");
-  add("--commit", options->commit, "ID", "of the run [git: HEAD]");
-  add("--branch", options->branch, "NAME", "of the run [git]; show, page: only that [all]");
-  add("--profile", options->profile, "NAME", "show, page: only that [of the newest run]");
-  add("--time", options->time, "S", "of the commit, in seconds since 1970 [git]");
-  add("--subject", options->subject, "TEXT", "of the commit's message [git]");
-  add("-o,--out", options->page, "FILE.html", "page: to write");
+  add("--file", options->file, "FILE", "file of the history [history.jsonl]");
+  add("--commit", options->commit, "ID", "commit of the run [git: HEAD]");
+  add("--branch", options->branch, "NAME",
+      "branch of the run [git]; show, page: only runs of it [all]");
+  add("--profile", options->profile, "NAME",
+      "show, page: only runs of this profile [that of the newest run]");
+  add("--time", options->time, "S", "time of the commit, in seconds since 1970 [git]");
+  add("--subject", options->subject, "TEXT", "subject line of the commit's message [git]");
+  add("-o,--out", options->page, "FILE.html", "page: file to write");
   add("--export", options->format, "github-action-benchmark|bencher",
-      "show: the newest run for these trackers");
+      "show: the newest run in the format of these trackers");
   add_gate_options(*command, options->gate);
   command->add_flag("--force", options->force, "page: replace the file");
   add_json_option(*command, options->json);

@@ -429,18 +429,19 @@ Command add_platforms_command(CLI::App& app, const Words&) {
   command->add_option("NAME", options->names, "chips: names or files");
   const TextOptions add_of_any{*command};
   add_of_any("-p,--set", run_options.overrides, "PATH=VALUE",
-             "parameter of the one shown, of the second compared, or of all; repeatable");
+             "parameter of the chip shown, of the second one compared, or of all; repeatable");
   add_of_any("--from", options->from, "NAME|FILE",
-             "new: the chip that its file begins with [gap9]");
+             "new: chip whose values the new file begins with [gap9]");
   const char* const group = "With feasibility, stages and systems";
   const TextOptions add{*command, group};
   add("--data", run_options.data, "DIR|synthetic",
       "ASL/EuRoC folder, or the synthetic flight [synthetic]");
   add("--frames", run_options.frames, "A:B", "frames, B exclusive [all]");
-  add("--profile", run_options.profile, "NAME", "of the workload [levio]; not of systems");
-  add("--seed", run_options.seed, "N", "of the workload's random draws [1]");
+  add("--profile", run_options.profile, "NAME", "profile of the workload [levio]; not of systems");
+  add("--seed", run_options.seed, "N", "seed of the workload's random draws [1]");
   add("--csv", run_options.out, "FILE", "write the rows to a file; not of stages");
-  add("--report", run_options.report, "FILE.html", "systems: page with power over frame rate");
+  add("--report", run_options.report, "FILE.html",
+      "systems: page to write, with power over frame rate");
   command->add_flag("--force", run_options.force, "replace these files")->group(group);
   command->add_flag("--yaml", options->yaml, "show: the platform file, all of it");
   add_jobs_option(*command, run_options.runner.jobs, "chip");

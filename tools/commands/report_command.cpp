@@ -54,7 +54,7 @@ Command add_report_command(CLI::App& app, const Words&) {
   const TextOptions add{*command};
   add("-o,--out", options->out, "FILE.html", "page to write");
   add("--allow", options->allow, "data,frames,profile,seed,size",
-      "differences of the input that are meant");
+      "differences of the input that are intended");
   command->add_flag("--force", options->force, "replace that file");
   add_examples(*command, {"leviosim report recorded --out report.html"});
   return {command, [=] { run(*command, *options); }};

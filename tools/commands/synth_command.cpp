@@ -103,16 +103,17 @@ void run(const CLI::App& command, const SynthOptions& options) {
 void add_motion_options(CLI::App& command, SynthOptions& options) {
   const TextOptions add{command, "With --motion"};
   add("--motion", options.motion, "DIR",
-      "fly along the ground truth of this ASL folder (images not needed) through a world");
+      "motion: flight along the ground truth of this ASL folder (images not needed)");
   add("--world", options.world, "KIND:N",
       "place and its seed: hall:1, workshop:1, or surfaces at a distance, 0.3m:1 [hall:1]");
   add("--size", options.size, "WxH",
-      "of the images, undistorted and decimated as by run [160x120]");
-  command.add_flag("--full-size", options.full_size, "the camera's images instead")
+      "size of the images, undistorted and decimated as by run [160x120]");
+  command.add_flag("--full-size", options.full_size, "images of the camera's own size instead")
       ->group("With --motion");
-  add("--imu", options.imu, "real|simulated", "IMU samples [real, if there are any]");
+  add("--imu", options.imu, "real|simulated",
+      "IMU samples: recorded or simulated [real, if there are any]");
   add("--frames", options.frames, "A:B", "frames, B exclusive [all]");
-  add("--motion-blur", options.motion_blur, "MS", "exposure time [none]");
+  add("--motion-blur", options.motion_blur, "MS", "exposure time in milliseconds [none]");
   command.add_flag("--illumination", options.illumination, "light that drifts, and dark stretches")
       ->group("With --motion");
 }
@@ -125,8 +126,8 @@ Command add_synth_command(CLI::App& app, const Words&) {
   const auto options = std::make_shared<SynthOptions>();
   const TextOptions add{*command};
   add("--out", options->out, "DIR", "folder, which becomes an ASL folder");
-  add("--seed", options->seed, "N", "of world, path and noise [1]");
-  add("--duration", options->duration, "S", "seconds [20]");
+  add("--seed", options->seed, "N", "seed of world, path and noise [1]");
+  add("--duration", options->duration, "S", "duration in seconds [20]");
   add_motion_options(*command, *options);
   command->add_flag("--force", options->overwrite, "replace a flight that was written before");
   command->add_flag("--quiet", options->quiet, "no progress");

@@ -40,9 +40,9 @@ void add_gate_options(CLI::App& command, GateOptions& options) {
   const TextOptions add{command};
   add("--budget", options.budget, "FILE", "limits that the run has to meet");
   add("--baseline", options.baseline, "RUN|FILE.json",
-      "what limits with a sign are relative to: a run, or what budget record printed");
+      "reference of limits with a sign: a run, or what budget record printed");
   add("--allow", options.allow, "chip,data,frames,profile,seed,size",
-      "differences of the baseline's input that are meant");
+      "differences of the baseline's input that are intended");
 }
 
 Gate::Gate(const GateOptions& options, const RecordOptions& chip)

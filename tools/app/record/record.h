@@ -6,7 +6,7 @@
 //   {"format":"leviosim run","version":1,
 //    "verdicts":[{"about":"time","grade":"good","word":"fits","reasons":[…]},…],
 //    "program":"0.1.0 ea42…","facts":{…},
-//    "statistics":{"frame.time.mean":[43.3e6,"ns","that a frame takes by itself"],…},
+//    "statistics":{"frame.time.mean":[43.3e6,"ns","time that a frame takes by itself"],…},
 //    "stages":[{"name":"EPnP RANSAC","key":"epnp_ransac","controller":false,"cycles":8123,
 //               "parts":{"score":{"issue f32_fma":[812,3401],…},…}},…]}
 //

@@ -20,7 +20,7 @@ using traces::RelativeErrors;
 void add_run(StatisticList& list, const RunResult& run) {
   list.add("run.image_width", "px", "width of the image that the workload gets", run.image_width);
   list.add("run.image_height", "px", "height of that image", run.image_height);
-  list.add("run.frame_period", "ns", "between two camera frames", run.frame_period_ns);
+  list.add("run.frame_period", "ns", "time between two camera frames", run.frame_period_ns);
   if (!run.timed) return;
   list.add("run.cores", "1", "cores N of the parallel execution", run.cores);
   list.add("run.cluster_clock", "Hz", "clock of the cluster", run.cluster_clock.count());
@@ -34,24 +34,28 @@ void add_cycles(StatisticList& list, const std::string& path, const RunResult& r
                 const StageResult& stage) {
   const std::optional<double> parallel = mean(stage.parallel, stage.calls);
   const Hertz clock = clock_of(run, stage);
-  list.add(path + "cycles.single.sum", "cycles", "on one core", stage.single.count());
-  list.add(path + "cycles.single.mean", "cycles", "of a call on one core",
+  list.add(path + "cycles.single.sum", "cycles", "cycles of all calls on one core",
+           stage.single.count());
+  list.add(path + "cycles.single.mean", "cycles", "cycles of a call on one core",
            value_of(mean(stage.single, stage.calls)));
-  list.add(path + "cycles.parallel.sum", "cycles", "on N cores", stage.parallel.count());
-  list.add(path + "cycles.parallel.mean", "cycles", "of a call on N cores", value_of(parallel));
+  list.add(path + "cycles.parallel.sum", "cycles", "cycles of all calls on N cores",
+           stage.parallel.count());
+  list.add(path + "cycles.parallel.mean", "cycles", "cycles of a call on N cores",
+           value_of(parallel));
   list.add(path + "cycles.parallel.worst", "cycles", "longest call on N cores",
            stage.worst_parallel.count());
-  list.add(path + "speedup", "1", "one core over N cores", value_of(speedup(stage)));
+  list.add(path + "speedup", "1", "cycles on one core over those on N cores",
+           value_of(speedup(stage)));
   list.add(path + "unmeasured", "1",
            "share of the cycles on one core of code that was not measured as compiled code",
            value_of(unmeasured_share(stage)));
-  list.add(path + "time.parallel.mean", "ms", "of a call on N cores",
+  list.add(path + "time.parallel.mean", "ms", "time of a call on N cores",
            parallel ? Json(milliseconds(*parallel, clock)) : Json(nullptr));
 }
 
 void add_breakdown(StatisticList& list, const std::string& path, const RunResult& run,
                    const StageResult& stage) {
-  list.add(path + "breakdown.total", "core-cycles", "of the team on N cores",
+  list.add(path + "breakdown.total", "core-cycles", "core-cycles of the team on N cores",
            stage.account.total());
   for (const sim::MechanismInfo& part : breakdown_parts(run))
     list.add(fmt::format("{}breakdown.{}", path, part.key), "core-cycles", part.meaning,
@@ -75,7 +79,7 @@ void add_served(StatisticList& list, const std::string& path, const StageResult&
     const std::string kernel = fmt::format("{}served.{}.", path, info.name);
     list.add(kernel + "calls", "1",
              fmt::format("calls that an accelerator served: {}", info.description), calls.calls);
-    list.add(kernel + "items", "1", fmt::format("their size, each item a {}", info.item),
+    list.add(kernel + "items", "1", fmt::format("items of these calls, each a {}", info.item),
              calls.items);
   }
 }
@@ -133,27 +137,28 @@ void add_frames(StatisticList& list, const RunResult& run) {
     if (!fact.adds_up) continue;
     std::int64_t sum = 0;
     for (const FrameResult& frame : run.frames) sum += frame.*fact.of;
-    list.add(fmt::format("frames.{}.sum", fact.name), "1", "summed over the frames", sum);
+    list.add(fmt::format("frames.{}.sum", fact.name), "1", "sum over the frames", sum);
   }
 }
 
 void add_latencies(StatisticList& list, const RunResult& run) {
   const Waiting waiting = frames_that_waited(run);
   list.add("frames.waited", "1", "frames that found the front end busy", waiting.frames);
-  list.add("frames.longest_wait", "ns", "of a frame for the front end", waiting.longest_ns);
+  list.add("frames.longest_wait", "ns", "longest wait of a frame for the front end",
+           waiting.longest_ns);
   for (const Scenario& scenario : scenarios(run)) {
     const std::string path = fmt::format("latency.{}.", scenario.key);
     list.add(path + "frames", "1", fmt::format("frames of the kind \"{}\"", scenario.name),
              scenario.frames);
-    list.add(path + "mean", "ns", "from the camera's frame to its pose",
+    list.add(path + "mean", "ns", "time from the camera's frame to its pose",
              value_of(scenario.mean_latency_ns()));
-    list.add(path + "worst", "ns", "longest from the camera's frame to its pose",
+    list.add(path + "worst", "ns", "longest time from the camera's frame to its pose",
              scenario.worst_latency_ns);
     list.add(path + "over_period", "1", "frames whose latency exceeds the frame period",
              scenario.over_period);
-    list.add(path + "cycles.single.mean", "cycles", "of the front end on one core",
+    list.add(path + "cycles.single.mean", "cycles", "cycles of the front end on one core",
              value_of(mean(scenario.single, scenario.frames)));
-    list.add(path + "cycles.parallel.mean", "cycles", "of the front end on N cores",
+    list.add(path + "cycles.parallel.mean", "cycles", "cycles of the front end on N cores",
              value_of(mean(scenario.parallel, scenario.frames)));
   }
 }
@@ -173,15 +178,15 @@ void add_frame_figures(StatisticList& list, const RunResult& run) {
     list.add(fmt::format("frame.latency.{}", name), "ns", description,
              frames == 0 ? Json() : std::move(ns));
   };
-  add("mean", "from the camera's frame to its pose, all frames",
+  add("mean", "time from the camera's frame to its pose, all frames",
       static_cast<double>(latency_sum_ns) / static_cast<double>(frames));
-  add("p50", "median from the camera's frame to its pose", latency.p50_ns);
-  add("p95", "that 95 % of the processed frames do not exceed", latency.p95_ns);
-  add("p99", "that 99 % of the processed frames do not exceed", latency.p99_ns);
-  add("worst", "longest from the camera's frame to its pose", latency.max_ns);
-  list.add("frame.cycles.single.mean", "cycles", "of the front end on one core",
+  add("p50", "median time from the camera's frame to its pose", latency.p50_ns);
+  add("p95", "latency that 95 % of the processed frames do not exceed", latency.p95_ns);
+  add("p99", "latency that 99 % of the processed frames do not exceed", latency.p99_ns);
+  add("worst", "longest time from the camera's frame to its pose", latency.max_ns);
+  list.add("frame.cycles.single.mean", "cycles", "cycles of the front end on one core",
            value_of(mean(single, frames)));
-  list.add("frame.cycles.parallel.mean", "cycles", "of the front end on N cores",
+  list.add("frame.cycles.parallel.mean", "cycles", "cycles of the front end on N cores",
            value_of(mean(parallel, frames)));
 }
 
@@ -207,10 +212,10 @@ void add_frame_times(StatisticList& list, const RunResult& run) {
     list.add(name + ".low", "ns", fmt::format("{}: low end", description), rounded(ns.low));
     list.add(name + ".high", "ns", fmt::format("{}: high end", description), rounded(ns.high));
   };
-  add("frame.time.mean", "that a frame takes by itself, without waiting for others",
+  add("frame.time.mean", "time that a frame takes by itself, without waiting for others",
       times->mean_ns);
-  add("frame.time.p99", "that 99 % of the frames do not exceed by themselves", times->p99_ns);
-  add("frame.time.worst", "longest that a frame takes by itself", times->worst_ns);
+  add("frame.time.p99", "time that 99 % of the frames do not exceed by themselves", times->p99_ns);
+  add("frame.time.worst", "longest time that a frame takes by itself", times->worst_ns);
 }
 
 void add_figure_rows(StatisticList& list, const RunResult& run) {
@@ -223,9 +228,9 @@ void add_stage_bands(StatisticList& list, const RunResult& run) {
   if (!run.time_bands) return;
   for (const TimeBands::Stage& stage : run.time_bands->stages) {
     const std::string path = fmt::format("stages.{}.cycles.parallel.band.", key_of(stage.stage));
-    list.add(path + "low", "1", "of the mean on N cores, over that mean: low end",
+    list.add(path + "low", "1", "ratio of the mean on N cores to its value: low end",
              rounded(stage.parallel.low));
-    list.add(path + "high", "1", "of the mean on N cores, over that mean: high end",
+    list.add(path + "high", "1", "ratio of the mean on N cores to its value: high end",
              rounded(stage.parallel.high));
   }
 }
@@ -236,8 +241,9 @@ void add_camera(StatisticList& list, const RunResult& run) {
   if (!figures) return;
   list.add("camera.rate", "1/s", "frames that the camera delivers", run.camera->fps);
   list.add("camera.arrived", "1", "frames that the camera delivered", figures->arrived);
-  list.add("camera.processed", "1", "of these, frames that the front end took", figures->processed);
-  list.add("camera.dropped", "1", "of these, frames that were lost", figures->dropped);
+  list.add("camera.processed", "1", "frames of the camera that the front end took",
+           figures->processed);
+  list.add("camera.dropped", "1", "frames of the camera that were lost", figures->dropped);
   list.add("camera.late", "1", "processed frames whose latency exceeds the frame period",
            figures->late);
   list.add("camera.missed", "1", "frames that were dropped or late", figures->missed());
@@ -284,13 +290,15 @@ void add_energy(StatisticList& list, const RunResult& run) {
   if (!energy) return;
   list.add("run.voltage", "V", "supply of the chip", run.chip.supply.voltage.count());
   for (const EnergyRow& row : energy->rows) add_energy_row(list, row);
-  add_banded(list, "energy.total", "mJ", "of the whole run", std::optional(energy->total().total()),
+  add_banded(list, "energy.total", "mJ", "energy of the whole run",
+             std::optional(energy->total().total()), 1e3);
+  add_banded(list, "energy.frame", "mJ", "energy per frame, idle time included",
+             energy->per_frame(), 1e3);
+  add_banded(list, "energy.mean_power", "mW", "mean power over the whole run", energy->mean_power(),
              1e3);
-  add_banded(list, "energy.frame", "mJ", "per frame, idle time included", energy->per_frame(), 1e3);
-  add_banded(list, "energy.mean_power", "mW", "over the whole run", energy->mean_power(), 1e3);
-  add_banded(list, "energy.front_end_power", "mW", "while the cluster works",
+  add_banded(list, "energy.front_end_power", "mW", "power while the cluster works",
              energy->power_of_front_end(), 1e3);
-  add_banded(list, "energy.controller_power", "mW", "that the controller adds while it works",
+  add_banded(list, "energy.controller_power", "mW", "power that the controller adds while it works",
              energy->power_of_controller(), 1e3);
 }
 
@@ -306,12 +314,13 @@ void add_area(StatisticList& list, const RunResult& run) {
     list.add(name + ".high", "mm2", fmt::format("{}: high end", description), mm2(sum.high));
   };
   add("area.chip", "logic and memories of the chip", sim::total_area(run.chip));
-  add("area.cluster", "of the cluster", sim::cluster_area(run.chip));
+  add("area.cluster", "area of the cluster", sim::cluster_area(run.chip));
 }
 
 void add_accuracy(StatisticList& list, const RunResult& run) {
   list.add("trajectory.poses", "1", "poses of the trajectory", run.trajectory.size());
-  list.add("trajectory.length", "m", "of the estimated path", rounded(path_length(run.trajectory)));
+  list.add("trajectory.length", "m", "length of the estimated path",
+           rounded(path_length(run.trajectory)));
   if (run.ate) add_ate(list, *run.ate);
 }
 
@@ -369,14 +378,15 @@ void add_ate(StatisticList& list, const Evaluation& evaluation,
     add("ate.located", "m", "absolute trajectory error without poses that are guesses, RMS",
         rounded(*evaluation.located_rmse_m));
   if (attitude) {
-    add("tilt.rmse", "deg", "of the vertical, attitudes best aligned, root mean square",
+    add("tilt.rmse", "deg", "error of the vertical, attitudes best aligned, root mean square",
         rounded(attitude->tilt_rmse_deg));
-    add("heading.rmse", "deg", "about the vertical, attitudes best aligned, root mean square",
+    add("heading.rmse", "deg", "error about the vertical, attitudes best aligned, root mean square",
         rounded(attitude->heading_rmse_deg));
   }
   add("matched", "1", "poses matched with the ground truth", evaluation.matched);
-  add("completion", "1", "how much of the flight has an estimate", rounded(evaluation.completion));
-  add("truth_length", "m", "of the true path", rounded(evaluation.path_length_m));
+  add("completion", "1", "share of the flight that has an estimate",
+      rounded(evaluation.completion));
+  add("truth_length", "m", "length of the true path", rounded(evaluation.path_length_m));
   add("size_ratio", "1",
       "scale: RMS distance of the estimated positions from their mean, over that of the true ones",
       evaluation.size_ratio ? rounded(*evaluation.size_ratio) : Json());

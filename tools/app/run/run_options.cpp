@@ -40,8 +40,9 @@ void add_workload_options(CLI::App& command, RunOptions& options, const std::str
   add("--data", options.data, "DIR|synthetic",
       "recording (EuRoC, TUM, KITTI), or the synthetic flight" + by_default);
   add("--frames", options.frames, "A:B", "frames, B exclusive [all]");
-  add("--profile", options.profile, "NAME", fmt::format("of the workload [{}]", options.profile));
-  add("--seed", options.seed, "N", "of the workload's random draws [1]");
+  add("--profile", options.profile, "NAME",
+      fmt::format("profile of the workload [{}]", options.profile));
+  add("--seed", options.seed, "N", "seed of the workload's random draws [1]");
   command.add_flag("--quiet", options.quiet, "no progress");
   command.get_option("--set")->description(
       "parameter of the chip, or of the workload: workload.… (leviosim workload); repeatable");
@@ -130,9 +131,10 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   add("--fps", options.camera_fps, "F",
       "closed loop: a camera of F frames/s that loses frames [the recorded rate]");
   add("--deadline", options.deadline, "drop|queue",
-      "closed loop: what becomes of a frame that finds the front end busy [drop]");
+      "closed loop: fate of a frame that finds the front end busy [drop]");
   add("--initial-delay", options.initial_delay, "S",
-      "seconds that the first poses wait at most for the map to settle, which corrects them [2; 0 "
+      "longest wait, in seconds, of the first poses for the map's alignment, which corrects them "
+      "[2; 0 "
       "for profiles without an initialisation]");
   command.add_flag("--online", options.online, "give every pose at once: the first are guesses");
   command.add_flag("--record", options.record, "leave a trace of the work, for leviosim replay");

@@ -60,8 +60,8 @@ outputs::OutputRequest file_request(const std::string& file,
 void add_timeline_options(CLI::App& command, TimelineOptions& options) {
   const TextOptions add{command};
   add("--timeline", options.file, "FILE",
-      "when everything happened: for ui.perfetto.dev, which opens the file locally, if the "
-      "name ends in .pftrace; as a picture if it ends in .svg");
+      "timeline to write: .pftrace for ui.perfetto.dev, which opens the file locally; .svg as a "
+      "picture");
   add("--timeline-frames", options.frames, "A:B",
       "frames of the timeline as frames.csv numbers them, B exclusive [all; of a "
       "picture two in the middle]");
