@@ -29,39 +29,41 @@ namespace leviosim::vio {
 /// What is assumed before anything is known, in standard deviations, and when enough is known.
 struct AlignmentOptions {
   bool enabled = false;
-  float inverse_depth = 3;  ///< of landmarks of which nothing is known, to begin with, 1/m
-  float spread = 1;         ///< of inverse depths, a standard deviation, as a share of their mean
+  float inverse_depth = 3;  ///< inverse depth of new landmarks at the start [1/m]
+  float spread = 1;         ///< standard deviation of inverse depths, as a share of their mean
   /// In place of spread while the window has few keyframes: with all landmarks about equally far
-  /// away the problem is nearly linear, and what it finds is near enough to begin with.
+  /// away the problem is nearly linear, and its solution is near enough to start from.
   float first_spread = 0.33f;
-  float velocity = 3;             ///< m/s
-  float acceleration = 2;         ///< mean over the window, m/s²
-  float first_gyro_bias = 0.03f;  ///< instead of the optimiser's, with few keyframes, rad/s
-  int min_keyframes = 3;          ///< of a window that says anything
-  int few_keyframes = 4;          ///< that leave landmarks equally far away, and a map not aligned
-  float initial_lambda = 1e-2f;   ///< damping with every new keyframe
+  float velocity = 3;      ///< velocity of the first keyframe [m/s]
+  float acceleration = 2;  ///< mean acceleration over the window [m/s²]
+  float first_gyro_bias =
+      0.03f;              ///< gyro bias with few keyframes, in place of the optimiser's [rad/s]
+  int min_keyframes = 3;  ///< least keyframes of a window that is aligned
+  int few_keyframes = 4;  ///< up to so many, first_spread holds and no map is aligned
+  float initial_lambda = 1e-2f;  ///< damping with every new keyframe
   // A map is aligned when all of these hold.
-  float max_distance = 3;         ///< from the minimum, in standard deviations of the unknowns
-  float max_uncertainty = 0.05f;  ///< of positions, as a share of their distances
-  float full_uncertainty = 4;     ///< times that, where the window has no room for more keyframes
-  /// Standard deviations of velocity, biases and gravity in all.
+  float max_distance = 3;         ///< distance from the minimum, in standard deviations
+  float max_uncertainty = 0.05f;  ///< uncertainty of positions, as a share of their distances
+  float full_uncertainty = 4;     ///< factor on it where the window has no room for more keyframes
+  /// Deviation of velocity, biases and gravity from their priors together, in standard deviations.
   float max_prior_deviation = 2.5f;
-  float min_explained = 0.7f;  ///< share of the landmarks that agree with the alignment
-  int min_landmarks = 30;      ///< that do and whose distance is known
-  // Of the starts that are compared.
+  float min_explained = 0.7f;  ///< least share of the landmarks that agree with the alignment
+  int min_landmarks = 30;      ///< least number of these whose depth is known
+  // Comparison of several starts.
   float same_scale = 1.2f;  ///< ratio of the lengths of two paths below which they are one solution
-  /// Half a chi-square: of two solutions whose costs differ by less, neither is known to be right.
+  /// Difference of the costs (half a chi-square) below which two solutions are ambiguous.
   float min_advantage = 4.5f;
-  int start_iterations = 12;  ///< of each start, at most
+  int start_iterations = 12;  ///< most iterations of each start
 };
 
 struct AlignmentReport : IterationReport {
-  float distance = 0;      ///< from the minimum before the iteration, in standard deviations
-  float uncertainty = 0;   ///< of positions, as a share of their distances from the first one (RMS)
-  int explained = 0;       ///< landmarks that agree with the alignment
-  bool arrived = false;    ///< at its minimum: more iterations gain nothing
-  bool converged = false;  ///< it is near its minimum, and can be true
-  bool determined = false;  ///< it has converged, and tells enough
+  float distance = 0;  ///< distance from the minimum before the iteration, in standard deviations
+  /// Uncertainty of positions, as a share of their distances from the first one (RMS).
+  float uncertainty = 0;
+  int explained = 0;        ///< landmarks that agree with the alignment
+  bool arrived = false;     ///< it is at its minimum: more iterations gain nothing
+  bool converged = false;   ///< it is near its minimum, and plausible
+  bool determined = false;  ///< it has converged, and its uncertainty is small enough
   bool ambiguous = false;   ///< another scale explains the window about as well
   float length = 0;         ///< RMS distance of the keyframes from the first one, m
 };

@@ -26,17 +26,17 @@
 
 namespace leviosim::vio {
 
-/// What is known before the first keyframe, and how the gauge is held: standard deviations.
+/// Standard deviations of the prior of the first keyframe, and of the gauge.
 struct PriorOptions {
-  float position = 1e-3f;   ///< of the oldest keyframe, m
-  float heading = 1e-3f;    ///< standard deviation, rad
-  float tilt = 0.1f;        ///< of the first keyframe: gravity averaged in motion, rad
-  float velocity = 1.0f;    ///< of the first keyframe, m/s
-  float gyro_bias = 0.1f;   ///< rad/s
-  float accel_bias = 0.1f;  ///< m/s²
-  // The first three, of a vehicle that stood still when it was seen first: its velocity is that of
-  // the moment in which it starts to move, its tilt and bias are means over a second, the tilt with
-  // the error that the accelerometer's bias makes.
+  float position = 1e-3f;   ///< position of the oldest keyframe [m]
+  float heading = 1e-3f;    ///< heading of the oldest keyframe [rad]
+  float tilt = 0.1f;        ///< tilt of the first keyframe: gravity averaged in motion [rad]
+  float velocity = 1.0f;    ///< velocity of the first keyframe [m/s]
+  float gyro_bias = 0.1f;   ///< bias of the gyro [rad/s]
+  float accel_bias = 0.1f;  ///< bias of the accelerometer [m/s²]
+  // Tilt, velocity and gyro bias of a vehicle that was at rest at first: the velocity is that of
+  // the moment in which it starts to move, tilt and bias are means over a second, the tilt with the
+  // error from the accelerometer's bias.
   float rest_tilt = 0.02f;
   float rest_velocity = 0.1f;
   float rest_gyro_bias = 0.005f;

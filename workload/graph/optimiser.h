@@ -53,16 +53,16 @@ struct IterationReport {
   bool positive_definite = false;  ///< the reduced system could be factored
   bool accepted = false;
   float cost_before = 0;  ///< half the sum of squared, whitened residuals
-  float cost_after = 0;   ///< at the attempted step; as before if there was none
+  float cost_after = 0;   ///< cost at the attempted step; cost_before if there was none
   float lambda = 0;       ///< damping of this iteration
-  int landmarks = 0;      ///< that took part
-  int observations = 0;   ///< that took part
+  int landmarks = 0;      ///< landmarks of the window that were used
+  int observations = 0;   ///< their observations that were used
   // Parts of cost_before.
   float visual = 0;
   float inertial = 0;
-  float prior = 0;  ///< of the past: the prior, or the anchor that stands in for it
-  /// Standard deviation of the scale of the keyframes' positions, as a share of it; known of joint
-  /// iterations of a full window that are hardly damped.
+  float prior = 0;  ///< of the marginalisation prior, or of the anchor in its place
+  /// Standard deviation of the scale of the keyframes' positions, as a share of it; only of joint
+  /// iterations of a full window with little damping.
   std::optional<float> scale_sigma;
 };
 

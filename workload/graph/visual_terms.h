@@ -32,10 +32,10 @@ struct EliminationScratch {
   Span Y;  ///< 6×3
 };
 
-/// What became of a window's landmarks and observations in one linearisation.
+/// Landmarks and observations of a window that one linearisation used.
 struct VisualUse {
-  int landmarks = 0;     ///< that took part
-  int observations = 0;  ///< of those landmarks, without the lost ones
+  int landmarks = 0;     ///< number of landmarks used
+  int observations = 0;  ///< number of their observations, without the lost ones
 };
 
 /// Linearises landmark after landmark at `window.state` and adds each to `system`.

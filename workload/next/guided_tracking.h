@@ -1,5 +1,5 @@
-// Tracking by prediction: where the camera must be by now tells where to look for landmarks, and
-// the pose is refined to all that are found. EPnP RANSAC is left for recovery.
+// Tracking by prediction: the predicted pose gives the search regions of the landmarks, and the
+// pose is refined to all that are found. EPnP RANSAC is used for recovery only.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
-// The frames since images were first seen in motion, each as what the IMU measured since the
-// keyframe before, so that their poses can be corrected when the map is aligned. Of keyframes that
-// have left the map, or were of a map that was given up, the IMU tells where they were: it is
-// followed back from the oldest that is there. In L2; the oldest frames are forgotten.
+// The frames since the camera first moved, each as the IMU's motion since the keyframe before, so
+// that their poses can be corrected when the map is aligned. The poses of keyframes that have left
+// the map, or were of a map that was given up, follow from the oldest keyframe of the map and the
+// IMU backwards. In L2; the oldest frames are forgotten.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ class InitialPath {
   using Ids = typename P::template Span<I32>;
 
   /// @param state, inertial  outlive this
-  /// @param frames           that are remembered; with 0 nothing is, and no memory taken
+  /// @param frames           number of frames remembered; 0: nothing is, and no memory is taken
   InitialPath(const FrontEndState<P>& state, const InertialPart<P>& inertial, work::Arena& arena,
               int frames);
 

@@ -239,7 +239,7 @@ void NextFrontEnd<P>::follow(TrackedFrame<P>& frame, FrameReport& report) {
     const std::optional<Pose<P>> still = still_pose(frame);
     frame.T_world_camera = still ? *still : inertial_.predicted_pose();
   }
-  frame.T_world_camera = settled(frame.T_world_camera);
+  frame.T_world_camera = held_at_rest(frame.T_world_camera);
 }
 
 /// From landmarks; without enough of them, by prediction; without one, from the last keyframe.
@@ -264,7 +264,7 @@ void NextFrontEnd<P>::locate(TrackedFrame<P>& frame, FrameReport& report) {
     report.source = PoseSource::Kept;
     pose = prediction_.last_reported();
   }
-  frame.T_world_camera = settled(*pose);
+  frame.T_world_camera = held_at_rest(*pose);
 }
 
 /// Where it is better than the 8-point algorithm, which guesses the length of its translation: the
@@ -316,11 +316,11 @@ bool NextFrontEnd<P>::images_rest() const {
          work::value(inertial_.recent().gyro_variance) < limits.gyro_stddev * limits.gyro_stddev;
 }
 
-/// The frame's pose, as a rotation that is one; at rest, the one of the frame before. The IMU
-/// cannot tell rest from uniform motion: from where the images disagree with rest, it is not
-/// believed until it has seen motion.
+/// The frame's pose with an orthonormal rotation; at rest, the pose of the frame before. The IMU
+/// cannot tell rest from uniform motion: once the images contradict rest, rest is ignored until the
+/// IMU has measured motion.
 template <class P>
-Pose<P> NextFrontEnd<P>::settled(const Pose<P>& T_world_camera) {
+Pose<P> NextFrontEnd<P>::held_at_rest(const Pose<P>& T_world_camera) {
   using F = typename P::F32;
   const RestOptions& limits = state_.profile.rest;
   const auto stage = state_.machine.stage(stages::kGuided);

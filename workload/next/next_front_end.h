@@ -1,5 +1,5 @@
-// The front end of `next`: it looks for landmarks where the IMU predicts them, knows when the
-// vehicle stands still, and does not believe what cannot be true.
+// The front end of `next`: guided matching around the IMU's prediction, detection of rest, and
+// rejection of implausible poses and maps.
 #pragma once
 
 #include <optional>
@@ -29,11 +29,11 @@ class NextFrontEnd : public FrontEnd<P> {
  private:
   using Floats = typename P::template Span<typename P::F32>;
 
-  /// What images show while the IMU sees rest.
+  /// Evidence of rest in the images while the IMU shows rest.
   struct ImageRest {
-    Vec3<P> motion{0.0f, 0.0f, 0.0f};  ///< of the last second, over the distance of what is seen
-    float time = 0;                    ///< looked at, s
-    bool was_seen = false;             ///< for a while nothing moved
+    Vec3<P> motion{0.0f, 0.0f, 0.0f};  ///< translation in the last second, as a share of depth
+    float time = 0;                    ///< time observed [s]
+    bool was_seen = false;             ///< the images have shown no motion for long enough
   };
 
   bool repeats_last(const Frame<P>& frame);
@@ -53,7 +53,7 @@ class NextFrontEnd : public FrontEnd<P> {
   void locate(TrackedFrame<P>& frame, FrameReport& report);
   std::optional<Pose<P>> pose_by_prediction(const TrackedFrame<P>& frame, FrameReport& report);
   std::optional<Pose<P>> still_pose(const Frame<P>& frame);
-  Pose<P> settled(const Pose<P>& T_world_camera);
+  Pose<P> held_at_rest(const Pose<P>& T_world_camera);
   bool is_keyframe(const Frame<P>& frame, const FrameReport& report);
 
   FrontEndState<P> state_;
@@ -62,11 +62,11 @@ class NextFrontEnd : public FrontEnd<P> {
   Prediction<P> prediction_;
   levio::ShiftRegister<P> random_;   ///< of both estimators
   std::optional<LoopPart<P>> loop_;  ///< if loops are closed
-  InitialPath<P> path_;              ///< until the map has settled
+  InitialPath<P> path_;              ///< frames before the end of the alignment
   float settling_ = 0;               ///< time since its alignment, s
   typename P::U32 sum_;              ///< over the features of the frame before
   bool still_ = false;  ///< the images say that the camera has not moved since the keyframe
-  bool rests_ = false;  ///< nor turned
+  bool rests_ = false;  ///< … and has not turned either
   ImageRest rest_;
 };
 

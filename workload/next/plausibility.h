@@ -1,4 +1,4 @@
-// What cannot be true: maps, poses and rotations beyond what a vehicle does.
+// Tests that a map, a pose or a rotation is physically possible for a vehicle.
 #pragma once
 
 #include "workload/next/prediction.h"
@@ -6,21 +6,22 @@
 
 namespace leviosim::vio {
 
-/// Whether the map has a meaning.
-/// @param stays  poses do not change by metres any more, as they may before a map is aligned
+/// Whether velocity and biases of the newest keyframe, and its pose, are within
+/// RecoveryOptions. @param is_aligned  the pose is tested, too: before the alignment it may change
+/// by metres
 template <class P>
-bool map_is_plausible(const FrontEndState<P>& state, const Prediction<P>& prediction, bool stays);
+bool map_is_plausible(const FrontEndState<P>& state, const Prediction<P>& prediction,
+                      bool is_aligned);
 
-/// Whether T_world_camera is a pose to which the camera can have got from where it was reported
-/// last.
-/// @param seconds  that this took at most
+/// Whether the vehicle can have moved from the last reported pose to T_world_camera.
+/// @param seconds  the time since then, at most
 template <class P>
 bool pose_is_plausible(const FrontEndState<P>& state, const Prediction<P>& prediction,
                        const Pose<P>& T_world_camera, float seconds);
 
-/// Whether the gyro saw this rotation since the keyframe, but for the largest bias.
-/// The 8-point algorithm's choice among its four solutions is wrong at times, and a map that begins
-/// with one is of no use.
+/// Whether the gyro measured this rotation since the keyframe, within the largest bias. The 8-point
+/// algorithm chooses a wrong one of its four solutions at times, and a map that begins with it is
+/// of no use.
 template <class P>
 bool agrees_with_gyro(const FrontEndState<P>& state, const InertialPart<P>& inertial,
                       const Mat3<P>& R_camera_keyframe);

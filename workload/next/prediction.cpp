@@ -59,9 +59,10 @@ void Prediction<P>::remember(const TrackedFrame<P>& frame, const FrameReport& re
 template class Prediction<work::Native>;
 template class Prediction<work::Counting>;
 
-/// The comparisons are not true either of what is not a number.
+/// NaN fails each comparison.
 template <class P>
-bool map_is_plausible(const FrontEndState<P>& state, const Prediction<P>& prediction, bool stays) {
+bool map_is_plausible(const FrontEndState<P>& state, const Prediction<P>& prediction,
+                      bool is_aligned) {
   using F = typename P::F32;
   const auto stage = state.machine.stage(stages::kGuided);
   const RecoveryOptions& limits = state.profile.recovery;
@@ -70,7 +71,7 @@ bool map_is_plausible(const FrontEndState<P>& state, const Prediction<P>& predic
   const auto below = [](const Vec3<P>& v, float limit) { return dot(v, v) < F(limit * limit); };
   return below(last.velocity, limits.max_speed) && below(bias.gyro, limits.max_gyro_bias) &&
          below(bias.accel, limits.max_accel_bias) &&
-         (!stays ||
+         (!is_aligned ||
           pose_is_plausible(state, prediction, last.T_world_camera, state.time_since_keyframe));
 }
 

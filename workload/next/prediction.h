@@ -1,5 +1,5 @@
-// Where the camera must be by now: moved on from the last keyframe as the IMU measured, or from the
-// last frame at its velocity.
+// The predicted pose of the camera: from the last keyframe by the IMU's motion, or from the last
+// frame at constant velocity.
 #pragma once
 
 #include "workload/next/motion_record.h"

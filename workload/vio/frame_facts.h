@@ -1,4 +1,4 @@
-// What the front end tells about a frame besides its pose, each fact described once: CSV files,
+// Facts about a frame besides its pose, each described once: CSV files,
 // statistics, work traces and tables walk over these descriptions. A new fact is a member and a row
 // of kFrameFacts.
 #pragma once
@@ -22,11 +22,11 @@ enum class PoseSource : std::uint8_t {
   Initialising
 };
 
-/// What a pose is worth.
+/// How far a pose can be trusted.
 enum class PoseState : std::uint8_t {
-  Located,      ///< from what the camera sees
+  Located,      ///< computed from landmarks or features in view
   Predicted,    ///< moved on by the IMU, since too little was seen again
-  Kept,         ///< that of the last keyframe: nothing tells where the camera is
+  Kept,         ///< that of the last keyframe, for lack of matches
   Initialising  ///< a guess: velocity, gravity and scale are not known yet
 };
 
@@ -44,7 +44,7 @@ constexpr std::optional<PoseState> state_named(std::string_view name) {
 struct PoseSourceInfo {
   PoseSource source;
   std::string_view name;   ///< in files
-  std::string_view words;  ///< in what people read
+  std::string_view words;  ///< for people
   int rank;                ///< there, from the usual to the rare
   std::string_view meaning;
   PoseState state = PoseState::Located;  ///< of its poses, as long as nothing corrects them
@@ -84,7 +84,7 @@ constexpr std::optional<PoseSource> source_named(std::string_view name) {
   return std::nullopt;
 }
 
-/// What the odometry knows of its map without the truth (odometry/back_end.h).
+/// The odometry's own judgement of its map, without ground truth (odometry/map_health.h).
 enum class Health : std::uint8_t { good, unreliable, lost, not_judged };
 
 /// In files, by number.

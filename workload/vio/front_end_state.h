@@ -31,11 +31,11 @@ struct FrontEndState {
   FeatureCamera<P> camera;
   Residence residence;
   KeyframeRecord<P> keyframe;
-  PoseGraph<P> graph;                       ///< in L2, as the source and target of transfers
+  PoseGraph<P> graph;                       ///< the graph in L2, for transfers
   PoseGraph<P, L2FromCluster> graph_in_l2;  ///< the graph as a cluster core reaches it
   bool started = false;                     ///< there is a map
-  std::uint32_t frame_number = 0;           ///< of the present frame, from 1 on
-  float time_since_keyframe = 0;            ///< [s]
+  std::uint32_t frame_number = 0;           ///< number of the present frame, from 1 on
+  float time_since_keyframe = 0;            ///< time since the last keyframe [s]
 };
 
 /// Room for the features of the frame, in local memory; their descriptors may lie in L2.

@@ -1,5 +1,5 @@
-// What a front end does with the IMU: the motion since the last keyframe, gravity and the gyro's
-// bias at rest, and the pose that it predicts.
+// The IMU in a front end: motion since the last keyframe, gravity and gyro bias at rest, and the
+// predicted pose.
 #pragma once
 
 #include <optional>
@@ -28,7 +28,7 @@ class InertialPart {
 
   /// A keyframe's pose, moved on by the motion since then.
   Pose<P> moved_on(const KeyframeState<P>& from, const ImuDelta<P>& delta) const;
-  /// What a motion has led from, if it ended here.
+  /// The keyframe state from which a motion leads to `to`.
   KeyframeState<P> moved_back(const KeyframeState<P>& to, const ImuDelta<P>& delta) const;
   /// The last keyframe's pose, moved on as the IMU measured; without an IMU, at its velocity.
   Pose<P> predicted_pose() const;

@@ -1,5 +1,5 @@
-// What a frame that becomes a keyframe leaves behind: a keyframe in the pose graph, observations of
-// known landmarks, and new landmarks triangulated with the keyframe before (paper III.B.5–6).
+// Insertion of a keyframe: its pose in the pose graph, observations of known landmarks, and new
+// landmarks triangulated with the keyframe before (paper III.B.5–6).
 #pragma once
 
 #include "workload/vio/frame.h"
@@ -8,9 +8,8 @@ namespace leviosim::vio {
 
 /// Puts the frame, whose pose is known, into the graph, and its features into the place of the last
 /// keyframe's.
-/// @param any_depth  0 if poses can tell where landmarks are; else those that are new get this
-/// depth
-///                   (m), and all matches are believed
+/// @param any_depth  depth [m] that new landmarks get without triangulation, and all matches are
+///                   accepted; 0: landmarks are triangulated
 template <class P>
 void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame, float any_depth);
 

@@ -1,5 +1,4 @@
-// How far the features have moved since the last keyframe, from which a frame that becomes a
-// keyframe is known.
+// Parallax since the last keyframe, which decides whether a frame becomes a keyframe.
 #pragma once
 
 #include <optional>

@@ -25,79 +25,84 @@ namespace leviosim::vio {
 /// How `next` refines a pose to the landmarks that it finds (next/pose_refinement.h). Chosen on the
 /// rendered EuRoC flights (ACCURACY.md).
 struct RefinementOptions {
-  int steps = 4;
-  float sigma_px = 1.0f;
-  float huber_px = 1.0f;    ///< errors count linearly from here on
-  float inlier_px = 3.0f;   ///< of a match that agrees
-  float min_share = 0.6f;   ///< of the matches that must agree; of wrong ones found within 8 px, a
-                            ///< seventh does by chance
-  float rotation = 0.02f;   ///< standard deviation of the prior, each axis, rad
-  float position = 0.05f;   ///< likewise, m
-  float min_depth = 0.05f;  ///< of a landmark in view, m
+  int steps = 4;            ///< Gauss-Newton iterations
+  float sigma_px = 1.0f;    ///< standard deviation of an observation [px]
+  float huber_px = 1.0f;    ///< reprojection error from which on the cost grows linearly [px]
+  float inlier_px = 3.0f;   ///< reprojection error below which a match agrees with the pose [px]
+  float min_share = 0.6f;   ///< least share of the matches that must agree with the pose; of wrong
+                            ///< matches within 8 px a seventh agrees by chance
+  float rotation = 0.02f;   ///< standard deviation of the prior's rotation, each axis [rad]
+  float position = 0.05f;   ///< standard deviation of the prior's position, each axis [m]
+  float min_depth = 0.05f;  ///< least depth of a landmark in view [m]
 };
 
 /// What `next` does when landmarks get few or are lost (next/). Chosen on the rendered EuRoC
 /// flights (ACCURACY.md).
 struct RecoveryOptions {
-  float wide_radius_px = 24;     ///< of a second search, where the first one finds too few; 0: none
-  float rotation = 0.1f;         ///< of its prior, standard deviation of each axis, rad
-  float position = 0.3f;         ///< likewise, m
-  float recovered_rotation = 1;  ///< of a search around the pose that EPnP found, likewise, rad
-  float recovered_position = 1;  ///< likewise, m
-  float max_blind_time = 3;      ///< that the IMU alone carries the pose for [s]
-  int min_tracked = 60;          ///< a frame that sees fewer landmarks becomes a keyframe, 0: never
-  float min_parallax = 0.3f;     ///< that it needs for that, as a share of keyframe_parallax
-  int min_features = 40;         ///< an image with fewer is dark or blurred, and no keyframe
-  // Beyond these a map has no meaning any more, and another one is begun.
-  float max_speed = 20;       ///< m/s
-  float max_gyro_bias = 0.5;  ///< rad/s
-  float max_accel_bias = 3;   ///< m/s²
-  float max_correction = 1;   ///< that the optimiser may have made since the last frame, m
-  /// An 8-point pose whose rotation differs by more from the gyro's, but for the largest bias since
-  /// the keyframe, is rejected, rad.
+  /// Radius of a second search, where the first one finds too few landmarks; 0: no second search
+  /// [px].
+  float wide_radius_px = 24;
+  float rotation = 0.1f;  ///< standard deviation of the second search's prior, each axis [rad]
+  float position = 0.3f;  ///< the same of its position, each axis [m]
+  float recovered_rotation = 1;  ///< standard deviation of a pose found by EPnP, each axis [rad]
+  float recovered_position = 1;  ///< the same of its position, each axis [m]
+  float max_blind_time = 3;      ///< longest time for which the IMU alone moves the pose on [s]
+  int min_tracked = 60;          ///< landmarks below which a frame becomes a keyframe; 0: never
+  float min_parallax = 0.3f;     ///< parallax of such a keyframe, as a share of keyframe_parallax
+  int min_features = 40;         ///< least features of a keyframe; with fewer it is dark or blurred
+  // A map that exceeds one of these is given up, and another one is begun.
+  float max_speed = 20;       ///< speed of the vehicle [m/s]
+  float max_gyro_bias = 0.5;  ///< size of the gyro's bias [rad/s]
+  float max_accel_bias = 3;   ///< size of the accelerometer's bias [m/s²]
+  float max_correction = 1;   ///< correction of the last pose by the optimiser [m]
+  /// Largest difference between the rotations of an 8-point pose and of the gyro since the
+  /// keyframe, beyond what the largest gyro bias explains; a pose that differs more is rejected
+  /// [rad].
   float max_gyro_difference = 0.05f;
 };
 
-/// What the noise of a frame does to the pose of a camera at rest, at most; beyond it the images
-/// contradict rest. Chosen on the rendered EuRoC flights (ACCURACY.md).
+/// When images and IMU show that the vehicle rests. Chosen on the rendered EuRoC flights
+/// (ACCURACY.md).
 struct RestOptions {
-  float position = 0.05f;  ///< m
-  float rotation = 0.02f;  ///< rad
-  /// While there are no landmarks: of the motion since the keyframe, over the distance of what is
-  /// seen. Below it the camera has not moved, whatever the IMU says.
+  // Differences from the last pose that noise explains; beyond them the images contradict rest.
+  float position = 0.05f;  ///< [m]
+  float rotation = 0.02f;  ///< [rad]
+  /// Translation since the keyframe, as a share of the scene's depth, below which a camera without
+  /// landmarks has not moved, whatever the IMU says.
   float image_motion = 0.006f;
-  float image_time = 1;  ///< for which the images must show it to say that it rests [s]
-  /// Of the gyro, over the last second: beyond it the vehicle turns, and an image that does not is
-  /// frozen, or shows what moves with the camera. With rotors that idle recorded flights have up to
-  /// 0.04, in the air 0.11 and more; rad/s.
+  float image_time = 1;  ///< time for which the images must show no motion before it rests [s]
+  /// Standard deviation of the gyro over the last second, beyond which the vehicle turns; an image
+  /// that does not move is then frozen, or shows what moves with the camera. Recorded flights have
+  /// up to 0.04 while rotors idle, and 0.11 or more in the air [rad/s].
   float gyro_stddev = 0.08f;
-  float seen_share = 0.25f;   ///< of that time, after which images that do not move have shown rest
-  float wrong_match = 0.03f;  ///< a match that moved farther is rejected, in normalised coordinates
-  /// If most matches moved farther than that, but not this far, the camera moves fast.
+  float seen_share = 0.25f;   ///< share of image_time after which still images count as rest
+  float wrong_match = 0.03f;  ///< motion, in normalised coordinates, of a match that is rejected
+  /// If most matches moved by more than wrong_match, but by less than this, the camera moves fast.
   float fast_match = 0.12f;
-  // Of means over a second at rest, at most, as data sheets of MEMS sensors have it.
-  float gyro_bias = 0.17f;   ///< 10 °/s, rad/s
-  float accel_error = 1.5f;  ///< of gravity's size: 0.1 g of offset, 5 % of scale, m/s²
+  // Largest means over a second at rest, as data sheets of MEMS sensors allow them.
+  float gyro_bias = 0.17f;   ///< angular rate: 10 °/s [rad/s]
+  float accel_error = 1.5f;  ///< difference from gravity: 0.1 g of offset, 5 % of scale [m/s²]
 };
 
-/// From where on the odometry does not call its map good (odometry/back_end.h).
+/// Limits beyond which the odometry calls its map unreliable or lost (odometry/map_health.h).
 struct HealthOptions {
-  /// Of whitened residuals: they are twice as large as their noise. What is assumed of the IMU is
-  /// several times its data sheet's, so that good windows lie at a tenth, and one with samples that
-  /// come 10 ms late at two to three.
+  /// Mean square of the whitened residuals: 4 is twice the assumed noise. The assumed IMU noise is
+  /// several times the data sheet's, so good windows have 0.1, and windows whose samples come 10 ms
+  /// late have 2 to 3.
   float mean_square = 4;
-  float accel_bias = 5;        ///< in standard deviations of the prior
-  float lost_accel_bias = 10;  ///< likewise; the poses are of no use
-  float memory_s = 1;    ///< for which an inconsistent window counts, and tracking is averaged
-  float tracked = 0.7f;  ///< share of the matches that agree
-  float drift = 0.1f;    ///< share of the path
-  /// Share of what windows changed the path's length by in memory_s that the scale may be off by: a
-  /// single correction comes to rest, while a map in a wrong minimum wanders on.
+  float accel_bias = 5;        ///< accelerometer bias, in standard deviations of the prior
+  float lost_accel_bias = 10;  ///< the same, from which on the poses are of no use
+  float memory_s =
+      1;  ///< time for which an inconsistent window counts and tracking is averaged [s]
+  float tracked = 0.7f;  ///< least share of the matches that agree with the pose
+  float drift = 0.1f;    ///< uncertainty of the path, as a share of its length
+  /// Uncertainty of the scale, as a share of the changes that windows made to the path's length in
+  /// memory_s: a single correction ends, while a map in a wrong minimum goes on changing.
   float corrected = 0.3f;
-  float blind_s = 0.5f;  ///< for which the IMU alone may move the pose on
-  // Of such a pose: what velocity and tilt, with the bias, are wrong by.
-  float blind_velocity = 0.05f;      ///< m/s
-  float blind_acceleration = 0.05f;  ///< m/s²
+  float blind_s = 0.5f;  ///< longest time for which the IMU alone may move the pose on [s]
+  // Errors of a pose that the IMU alone has moved on.
+  float blind_velocity = 0.05f;      ///< velocity [m/s]
+  float blind_acceleration = 0.05f;  ///< acceleration from tilt and bias [m/s²]
 };
 
 struct Profile {
@@ -109,36 +114,39 @@ struct Profile {
   // Pose of a frame (paper III.B.3–4).
   levio::EpnpRansacOptions epnp;
   levio::EssentialRansacOptions essential;
-  float essential_inlier_px = 0.7f;   ///< Sampson error of an inlier of the 8-point algorithm
-  std::uint32_t sampling_seed = 1;    ///< of the one register that samples are drawn with
-  int min_world_matches = 25;         ///< for EPnP, before and after the age filter
-  int min_frame_matches = 10;         ///< for the 8-point algorithm
-  int min_epnp_inliers = 15;          ///< as many; with fewer the pose is predicted instead
-  float min_translation = 0.01f;      ///< per keyframe interval, of the 8-point pose [m]
-  float max_translation_time = 1.0f;  ///< that the last velocity is trusted for [s]
+  float essential_inlier_px = 0.7f;  ///< Sampson error of an inlier of the 8-point algorithm
+  std::uint32_t sampling_seed = 1;   ///< seed of the shift register of both RANSACs
+  int min_world_matches = 25;        ///< least matches for EPnP, before and after the age filter
+  int min_frame_matches = 10;        ///< least matches for the 8-point algorithm
+  int min_epnp_inliers = 15;         ///< least inliers of EPnP; with fewer the pose is predicted
+  float min_translation = 0.01f;     ///< least translation of an 8-point pose per keyframe [m]
+  float max_translation_time =
+      1.0f;  ///< longest time for which the last velocity gives it scale [s]
 
-  /// Do as the released program where that costs accuracy, to be compared with it: rotation counts
-  /// as parallax, and descriptors have its slip and as few matches. Of the profile levio only.
+  /// Behaves as the released program where that costs accuracy, for comparisons with it: rotation
+  /// counts as parallax, descriptors have the release's indexing slip, and as few match. Profile
+  /// levio only.
   bool released = false;
 
-  // What `next` adds to it (next/). Not enabled: `levio`.
+  // What `next` adds (next/); `levio` leaves all of it disabled.
   GuidedOptions guided;
   RefinementOptions refinement;
-  PatchAlignmentOptions patches;  ///< of features with those of the last keyframe
+  PatchAlignmentOptions patches;  ///< alignment of features to patches of the last keyframe
   RecoveryOptions recovery;
   RestOptions rest;
   HealthOptions health;
-  AlignmentOptions alignment;        ///< of a map that begins in motion; needs the joint optimiser
-  float alignment_parallax = 0.8f;   ///< of its keyframes, as a share of keyframe_parallax …
-  float alignment_interval = 0.25f;  ///< … or this time, if they have moved at all [s]
-  float initial_wait = 0;            ///< of poses for the alignment that corrects them, at most [s]
-  float settling_time = 1.5f;        ///< of those poses after the alignment, s
+  AlignmentOptions alignment;  ///< of a map that begins in motion; needs the joint optimiser
+  /// Parallax between keyframes before the alignment, as a share of keyframe_parallax …
+  float alignment_parallax = 0.8f;
+  float alignment_interval = 0.25f;  ///< … or time between them, if the camera has moved [s]
+  float initial_wait = 0;      ///< longest wait of poses for the alignment, which corrects them [s]
+  float settling_time = 1.5f;  ///< wait of those poses after the alignment [s]
   LoopOptions loop;
 
   // Keyframes and landmarks (III.B.5–6).
-  float keyframe_parallax = 0.05f;  ///< mean, in normalised coordinates
+  float keyframe_parallax = 0.05f;  ///< mean parallax of a keyframe, in normalised coordinates
   int max_landmarks = 1000;
-  int max_landmark_age = 15;               ///< keyframes without being seen
+  int max_landmark_age = 15;               ///< keyframes since a landmark was last seen
   float max_landmark_error_sq = 2.0f;      ///< squared reprojection error of a new landmark [px²]
   float max_observation_error_sq = 64.0f;  ///< … of a known landmark in a new keyframe [px²]
 
@@ -152,11 +160,11 @@ struct Profile {
   StillnessOptions stillness;
   BiasOptions biases;
   OptimiserOptions optimiser;
-  int optimiser_keyframes = 8;  ///< window
+  int optimiser_keyframes = 8;  ///< keyframes of the window
   int max_observations = 2400;
   int optimiser_iterations = 3;  ///< per frame
-  /// Of the same newest keyframe, for the joint optimiser; as many as two keyframes in slow flight
-  /// lie frames apart.
+  /// Snapshots of one newest keyframe that the joint optimiser works on; in slow flight keyframes
+  /// lie as many frames apart.
   int max_snapshots = 10;
 
   int l1_alignment = 1;  ///< bytes; the release's allocator packs blocks
@@ -165,7 +173,7 @@ struct Profile {
   bool runs_epnp() const { return use_epnp && !guided.enabled; }
   /// Whether a map that begins in motion waits for its alignment.
   bool initialises() const { return alignment.enabled && optimiser.joint; }
-  /// Of a camera, whose poses may wait.
+  /// Number of frames whose poses wait for the alignment, at a camera's frame rate [1/s].
   int frames_that_wait(float frame_rate) const;
 };
 

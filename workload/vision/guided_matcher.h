@@ -16,10 +16,10 @@ namespace leviosim::vio {
 /// Chosen on the rendered EuRoC flights (ACCURACY.md); the side of a cell decides the work only.
 struct GuidedOptions {
   bool enabled = false;
-  float radius_px = 8.0f;   ///< around the predicted place
-  int max_distance = 50;    ///< bits, at most 255; a match is strictly closer
-  int cell_px = 8;          ///< side of the cells that features are sorted into
-  float min_depth = 0.05f;  ///< m; nearer landmarks are out of view
+  float radius_px = 8.0f;   ///< search radius around the predicted pixel [px]
+  int max_distance = 50;    ///< Hamming distance that a match must be below, at most 255 [bits]
+  int cell_px = 8;          ///< side of the grid cells in which features are looked up [px]
+  float min_depth = 0.05f;  ///< least depth of a landmark in view [m]
 };
 
 /// Landmarks and the view that they are looked for in.
@@ -32,7 +32,7 @@ struct GuidedInput {
   Span<typename P::U32> descriptors;  ///< 8 words per landmark
   Span<typename P::Byte> ages;
   int landmarks = 0;
-  int max_age = 0;     ///< older ones are left out
+  int max_age = 0;  ///< older ones are left out
   Pose<P> T_camera_world{};
   PinholeCamera camera{};
   int width = 0, height = 0;  ///< px

@@ -19,21 +19,21 @@ struct PatchAlignmentOptions {
 
   bool enabled = false;
   int radius = 3;           ///< the patch has 2·radius + 1 pixels a side, at most kMostRadius
-  int iterations = 6;       ///< at most
-  float last_step = 0.03f;  ///< px; a step this short is the last one
-  float max_shift = 1.5f;   ///< px from where the detector found the feature, in each direction
-  /// Of the grey levels of two patches that agree, in squares about their means, as a share of
-  /// those of the patch.
+  int iterations = 6;       ///< most iterations of a patch
+  float last_step = 0.03f;  ///< step below which the iteration ends [px]
+  float max_shift = 1.5f;   ///< largest shift from the detected corner, in each direction [px]
+  /// Largest sum of squared differences of two patches that agree, without their means, as a share
+  /// of the sum of squares of the patch.
   float max_difference = 0.3f;
   bool required = true;  ///< a match whose patches do not agree is rejected
-  float reach = 3.0f;    ///< as max_shift, from where a landmark is predicted, px
+  float reach = 3.0f;    ///< largest shift from a landmark's predicted pixel, likewise [px]
 };
 
-/// What became of a match.
+/// The result of a match's alignment.
 enum class PatchVerdict : std::int8_t {
-  Unknown,   ///< the patch does not lie in the image as a whole, or tells no place
-  Agrees,    ///< the feature has been moved to where the patches agree
-  Disagrees  ///< nowhere near the feature
+  Unknown,   ///< the patch lies partly outside of the image, or has too little texture
+  Agrees,    ///< the feature was moved to where the patches agree
+  Disagrees  ///< the patches agree nowhere near the feature
 };
 
 /// An image and the features in it that are matched, in local memory. Coordinates are in units of

@@ -11,7 +11,7 @@
 
 namespace leviosim::tools {
 
-/// What a figure is held against.
+/// The bound of a limit.
 struct Bound {
   bool at_most = true;    ///< "<=", else ">="
   bool relative = false;  ///< to the baseline: the text has a sign
@@ -45,7 +45,7 @@ struct BudgetSection {
   std::vector<Limit> limits;   ///< with reason and owner of the section where they have none
 };
 
-/// A limit that may be missed for a while, but by no more than up to another bound.
+/// A limit that may be missed until a day, within another bound.
 struct AcceptedMiss {
   std::string limit;             ///< title of what is held: "EPnP RANSAC: cycles <= +3 %"
   std::optional<Bound> bound{};  ///< that holds instead; verdicts have none

@@ -1,5 +1,5 @@
-// Changes of a file of budgets that people review: limits that lost their slack, and regressions
-// that are accepted until a day. What else stands in the file stays as it is, comments included.
+// Edits of a budget file, for people to review: limits tightened to a run, and regressions accepted
+// until a day. The rest of the file stays as it is, comments included.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ std::string tightened(const Budget& budget, const std::string& text, const RunRe
 /// A miss to accept.
 struct Acceptance {
   std::vector<std::string> limits = {};  ///< titles; none: the one that fails
-  double margin = 0;                     ///< in per cent, between the value and the new bound
+  double margin = 0;                     ///< distance from the value to the new bound [%]
   std::string reason;
   std::string until;  ///< the last day
 };

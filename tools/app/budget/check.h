@@ -1,5 +1,5 @@
-// Holds a run against the limits of a budget: what was found, by how much a limit is missed, where,
-// and why.
+// Checks a run against the limits of a budget: findings with the excess of a missed limit, where it
+// was missed, and why.
 #pragma once
 
 #include <optional>
@@ -22,21 +22,21 @@ struct Finding {
   std::optional<double> bound;     ///< absent if the baseline has no value
   std::optional<double> baseline;  ///< where the bound is relative to it
   std::string since = {};  ///< the run that it is relative to, where that is not the baseline's
-  std::optional<double> before = {};  ///< of what is not met: in the run before, where one is known
+  std::optional<double> before = {};  ///< value in the run before; only of limits that are not met
   std::string accepted = {};          ///< why it may be missed, and until when
   std::string expired = {};           ///< why it might be: the day is over, or it is missed by more
   bool met = false;
   std::string where;             ///< stage, fork, block; of what is not met
   std::vector<std::string> why;  ///< parts that explain it, the largest first
 
-  /// What is held: "8-point RANSAC: cycles <= +3 %", with the statistic in place of a pattern.
+  /// The limit: "8-point RANSAC: cycles <= +3 %", with the statistic in place of a pattern.
   std::string title() const;
-  /// By how much it is better than the baseline, in per cent, where that is more than the limit
-  /// allows the other way: the limit no longer holds what was won.
+  /// Improvement on the baseline in per cent, where it exceeds what the limit allows for the worse:
+  /// the baseline should then be renewed.
   std::optional<double> better() const;
   /// Whether it is not met, but no worse than in the run before.
   bool was_over() const;
-  /// Whether it is not met and fails the check; else a warning is all that it is.
+  /// Whether it is not met and fails the check; other missed limits only warn.
   bool fails() const { return !met && !limit->warns && accepted.empty() && !was_over(); }
   /// By how much, and why it may or might be: "10259.8 kcycles, 5.84 % above 9693.3 kcycles".
   std::string excess() const;
@@ -55,9 +55,9 @@ struct CheckResult {
   std::vector<std::string> not_measured = {};  ///< limits on what a measurement has not
   bool is_kept = false;  ///< the baseline lies in a file, and does not move along with a history
 
-  std::size_t missed() const;  ///< that fail the check
-  std::size_t warned() const;  ///< that are not met, but do not
-  std::size_t better() const;  ///< than the baseline
+  std::size_t missed() const;  ///< number of limits that fail the check
+  std::size_t warned() const;  ///< number of limits that are not met, but only warn
+  std::size_t better() const;  ///< number of figures that are better than the baseline's
 };
 
 /// @param budget    outlives the result

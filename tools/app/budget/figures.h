@@ -1,5 +1,5 @@
-// What a limit may be about: phrases for the figures that most budgets hold, and all statistics of
-// a run by their names, with the units that a limit may be written in.
+// The figures that a limit may name: phrases for those of most budgets, and all statistics of a run
+// by their names, with the units of limits.
 #pragma once
 
 #include <span>
@@ -22,7 +22,7 @@ struct FigurePhrase {
 std::span<const FigurePhrase> run_phrases();
 std::span<const FigurePhrase> stage_phrases();
 
-/// What can be said before there is a run: the unit of a phrase, the name of what is nearly one.
+/// Checks a limit before there is a run: the unit of a phrase, and names close to a phrase.
 /// @throws InputError at the limit's line
 void check_figure(const Limit& limit);
 
@@ -44,7 +44,7 @@ double bound_in(const Limit& limit, std::string_view statistic_unit);
 /// Whether a bound is a change in per cent of the baseline.
 bool is_percent_of_baseline(const Bound& bound);
 
-/// In what a statistic is shown to people: so many of its units.
+/// The unit in which people see a statistic, and its size in the statistic's unit.
 struct ShownUnit {
   std::string_view name;
   double size = 1;

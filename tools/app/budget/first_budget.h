@@ -1,4 +1,4 @@
-// A first budget for a run: what it needs today and a margin, to be edited by people.
+// A first budget for a run: its values and a margin, to be edited by people.
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
-// Where a limit was missed, and why: the stage, what its cores did and by which mechanism, or the
-// blocks of a memory; against the baseline if there is one, else what weighs most in the run.
+// Where and why a limit was missed: the stage, and the forks and mechanisms with most of the
+// excess, or the blocks of a memory; against the baseline if there is one, else the largest parts
+// of the run.
 #pragma once
 
 #include "tools/app/budget/check.h"

@@ -1,4 +1,4 @@
-// Where leviosim keeps what it can make again.
+// The cache folder, for files that can be made again.
 #pragma once
 
 #include <csignal>

@@ -1,4 +1,4 @@
-// The command line of leviosim: subcommands with their options, and the errors that people make.
+// The command line of leviosim: subcommands with their options, and messages for mistyped ones.
 #pragma once
 
 #include <functional>
@@ -16,11 +16,11 @@ namespace leviosim::tools {
 struct Command {
   CLI::App* app = nullptr;
   std::function<void()> run;  ///< with the options as parsed
-  bool goes_on = false;       ///< finds again what it finished before it was interrupted
+  bool goes_on = false;       ///< the same command resumes after an interruption
 };
 
-/// Declares options that take text: names, where it goes, what stands for it in the help, help.
-/// Those of lists are repeatable. @param split  whether values of a list may be one word, "1,2,3"
+/// Declares options that take text: names, variable, placeholder in the help, help text. Those of
+/// lists are repeatable. @param split  whether values of a list may be one word, "1,2,3"
 struct TextOptions {
   CLI::App& command;
   std::string group{};  ///< heading in the help

@@ -1,5 +1,5 @@
-// The command line as others describe it: a manual page, and what shells complete. All of it
-// follows from what the commands declare.
+// The manual page and the completions for shells, generated from the options that the commands
+// declare.
 #pragma once
 
 #include <string>

@@ -1,5 +1,4 @@
-// What commands need of the host: interrupts that are held back, a stack, other programs, the
-// folder of caches.
+// Host services of commands: interrupts that are held back, and a larger stack.
 //
 // Ctrl-C and termination requests are handled between two steps of work instead of in the middle of
 // one, so that staged output is removed on the way out (sim/base/interruption.h).

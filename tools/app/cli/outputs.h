@@ -1,5 +1,5 @@
-// How commands end: results are put in place, then the report is printed. What fails to be put in
-// place costs nobody the report.
+// The end of a command: results are moved into place, then the report is printed, even if moving
+// failed.
 #pragma once
 
 #include <functional>

@@ -31,8 +31,8 @@ struct Printout {
     is_whole = whole;
   }
 
-  /// What came out of it and why, in a sentence that begins with "verdict: " or "in short: ": the
-  /// first line of the screen. And command lines to try next: its last ones. Both stay.
+  /// Adds the conclusion, a sentence that begins with "verdict: " or "in short: " and is the first
+  /// line of the screen, and command lines to try next, which are its last ones. Both always stay.
   Printout ending(std::string sentence, std::vector<std::string> commands) &&;
 
   std::vector<std::string> parts;
@@ -51,8 +51,8 @@ void add_json_option(CLI::App& command, bool& json);
 /// @throws InputError if both were asked for
 void expect_json_or_budget(bool json, const std::string& budget);
 
-/// Shows it at the end of the command: what came out, the text, where results are unless the
-/// printout is whole, and what to do next.
+/// Shows it at the end of the command: the conclusion, the text, where results are unless the
+/// printout is whole, and the next commands.
 void print(const Printout& printout, const std::vector<ShownPath>& places = {});
 
 /// What the functions return: `document()` where it was asked for, else `lines()`, which may be a

@@ -6,9 +6,9 @@
 // Newlines and tabs of results stay, so texts from outside are made printable() where they enter a
 // result. No line is a command for a server of CI.
 //
-// What a command shows people: one screen, so that nothing of it scrolls away. Details, such as
-// tables, give up lines for that, the longest of them first; what came out and what to do next
-// stays. And how text is fitted into lines.
+// A command shows people one screen, so that nothing scrolls away. Details, such as tables, give up
+// lines for that, the longest of them first; the conclusion and the next commands stay. Text is
+// fitted into lines here, too.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-// What identifies this build in manifests and caches.
+// Identity of this build in manifests and caches.
 #pragma once
 
 #include <string>

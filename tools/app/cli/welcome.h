@@ -1,4 +1,4 @@
-// The first screen of somebody who types the program's name: what there is, and where to begin.
+// The screen that the program's name alone prints: its commands, and where to begin.
 #pragma once
 
 #include <string>

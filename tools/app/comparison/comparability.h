@@ -11,7 +11,7 @@
 
 namespace leviosim::tools {
 
-/// Differences that the user does not mind: "data,seed".
+/// Differences that the user allows: "data,seed".
 using Allowed = std::set<std::string>;
 
 /// @throws InputError for names that are none of chip, data, frames, profile, seed, size

@@ -1,6 +1,6 @@
-// What differs between two runs, as a tree of quantities: each has its value in run A and in run B,
-// and parts whose values add up to it. So do their differences. Plain data; comparison_report.cpp
-// prints it.
+// The difference of two runs as a tree of quantities: each has its value in run A and in run B, and
+// parts whose values add up to it; so do the differences. Plain data; comparison_report.cpp prints
+// it.
 //
 // Cycles are those of a mean frame on N cores. They are split twice: by mechanism and kind of
 // operation, and by fork. A third split is by cause: work, its cost, and contention.
@@ -21,23 +21,23 @@ struct ComparedQuantity {
   std::optional<double> b;
   std::vector<ComparedQuantity> parts = {};  ///< all or none of it
 
-  /// B minus A, absent where one of them is.
+  /// B minus A; absent if one of them is.
   std::optional<double> difference() const;
-  /// Of A; absent also if that is 0.
+  /// The difference in per cent of A; absent also if A is 0.
   std::optional<double> percent() const;
 };
 
-/// Of a difference of cycles.
+/// A difference of cycles, split by cause.
 struct Causes {
-  double work = 0;        ///< other numbers of operations, at their cost in A
-  double cost = 0;        ///< the operations of B at their cost in B instead of that in A
-  double contention = 0;  ///< cores that wait for shared units, for each other, for the DMA
+  double work = 0;        ///< change of the numbers of operations, at their cost in A
+  double cost = 0;        ///< change of the cost of an operation, at the numbers of B
+  double contention = 0;  ///< change of the waits for shared units, for each other, for the DMA
 
   double total() const { return work + cost + contention; }
   Causes& operator+=(const Causes& o);
 };
 
-/// The name of what the team awaits between forks: transfers.
+/// The part for waits of the team between forks: transfers.
 inline constexpr const char* kOutsideForks = "outside of forks";
 
 struct StageComparison {
@@ -48,11 +48,10 @@ struct StageComparison {
   ComparedQuantity share;       ///< of the cycles of a frame, in per cent; none on the controller
   ComparedQuantity operations;  ///< of all calls
   bool same_work = true;
-  /// What became of work that an accelerator serves in one of the runs only: "offloaded to
-  /// hamming".
+  /// Accelerators that serve the stage in one of the runs only: "offloaded to hamming".
   std::vector<std::string> offloaded = {};
-  /// Cycles of a mean frame. Parts: mechanisms, and in them kinds of operation; absent if of
-  /// one of the runs it is not known where its cycles went.
+  /// Cycles of a mean frame. Parts: mechanisms, and in them kinds of operation; absent if one of
+  /// the runs has no breakdown.
   std::optional<ComparedQuantity> mechanisms;
   /// The same by fork, with mechanisms as parts.
   std::optional<ComparedQuantity> forks;
@@ -66,8 +65,8 @@ struct RunComparison {
   std::vector<ComparedQuantity> figures;  ///< of the run as a whole
   std::vector<StageComparison> stages;
   ComparedQuantity frame;  ///< cycles of a mean frame on N cores; parts: the cluster's stages
-  std::vector<ComparedQuantity>
-      blocks;  ///< alive at a peak, that appeared, went, or changed their size
+  /// Blocks of memory at a peak that are in one run only, or differ in size.
+  std::vector<ComparedQuantity> blocks;
   ComparedQuantity energy_by_stage;  ///< mJ of a frame
   ComparedQuantity energy_by_domain;
 

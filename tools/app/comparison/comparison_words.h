@@ -10,13 +10,13 @@
 
 namespace leviosim::tools {
 
-/// "+1.25 %", "±0.00 %" where nothing else is left of it.
+/// "+1.25 %"; "±0.00 %" for what rounds to zero.
 std::string signed_percent(std::optional<double> value);
 
 /// A part that changes its stage by less explains nothing.
 inline constexpr double kLeastShare = 1e-4;
 
-/// Which parts of a difference are asked for.
+/// The parts of a difference that are listed: all, or those with more cycles in B.
 enum class Toward { both, more };
 
 /// "8-point hypotheses: issue +1.2 %": the parts of a stage that explain most of its difference,
@@ -26,7 +26,7 @@ enum class Toward { both, more };
 std::vector<std::string> reasons(const StageComparison& stage, std::size_t most,
                                  Toward toward = Toward::both);
 
-/// The name of a part for people: what a mechanism is, else as it is.
+/// The name of a part for people: the description of a mechanism, else the name.
 std::string part_label(const std::string& name);
 
 /// One line about the work: the same, or where it is not.

@@ -1,5 +1,5 @@
-// Why a mean frame of the cluster takes another time on another chip: the difference by mechanism,
-// in words, in milliseconds. All causes together are the whole difference.
+// The causes of the difference between the times of a mean frame on two chips: by mechanism, in
+// words and milliseconds. All causes together are the whole difference.
 //
 // Work that is divided among other numbers of cores, work that went to an accelerator, and another
 // clock are causes of their own: none of them makes an operation cheaper.
@@ -13,7 +13,7 @@
 
 namespace leviosim::tools {
 
-/// Where the cycles of a run went, and what a cycle is.
+/// The breakdown of a run's cycles, and the clock they are of.
 struct TimedParts {
   std::vector<StageParts> stages;
   int cores = 0;
@@ -24,7 +24,7 @@ struct TimedParts {
 struct MainCause {
   std::string what;   ///< "waiting for code"
   double ms = 0;      ///< of a mean frame; below 0: saved
-  std::string stage;  ///< that has most of it
+  std::string stage;  ///< stage with the largest share of it
   double stage_ms = 0;
 };
 

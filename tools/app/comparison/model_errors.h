@@ -1,4 +1,4 @@
-// A model beside what was measured on a chip, stage by stage.
+// Errors of the model against cycles measured on a chip, stage by stage.
 #pragma once
 
 #include <optional>
@@ -9,12 +9,12 @@
 
 namespace leviosim::tools {
 
-/// Cycles of a call, or of a frame, of a model beside what was measured.
+/// Cycles of a call, or of a frame, in the model and as measured.
 struct ModelError {
   std::string stage;
   std::optional<double> measured;
   std::optional<double> model;
-  std::optional<double> percent;  ///< of what was measured
+  std::optional<double> percent;  ///< error in per cent of the measured value
 };
 
 /// Of each stage, and last of the frame, where one of the runs was measured (A, if both were).

@@ -1,6 +1,6 @@
-// Two builds of leviosim on the same input. What each leaves is compared as any two runs are; the
-// new build also times the work that the old one recorded, so that it is known what of a difference
-// is other work, another cost of the same work, and another number of the chip.
+// Two builds of leviosim on the same input. Their runs are compared as any two runs are; the new
+// build also replays the work that the old one recorded, which splits the difference into changed
+// work, changed cost of the same work, and changed numbers of the chip.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What became of the figures of a budget over many runs. Runs have no noise: every change of a
+// Trends of a budget's figures over many runs. Runs have no noise: every change of a
 // figure is one of a commit. A change beyond a limit is a step; smaller ones that are beyond it
 // together are a drift, which no comparison with the run before shows.
 #pragma once
@@ -16,8 +16,8 @@ namespace leviosim::tools {
 
 /// A change of a figure from one run to the next.
 struct FigureChange {
-  std::size_t run = 0;  ///< that has the new value
-  double percent = 0;   ///< of the value before; above 0: worse
+  std::size_t run = 0;  ///< run with the new value
+  double percent = 0;   ///< change in per cent of the value before; above 0: worse
 };
 
 /// A figure over runs, the oldest first, held against a limit in per cent of a baseline.
@@ -28,8 +28,8 @@ struct Trend {
   std::string stage;  ///< its name; empty: the run as a whole
   std::string unit;
   std::vector<std::optional<double>> values;
-  double allowed = 0;               ///< of a change for the worse, in per cent
-  std::vector<FigureChange> steps;  ///< for the worse, beyond the limit
+  double allowed = 0;               ///< largest change for the worse [%]
+  std::vector<FigureChange> steps;  ///< changes for the worse beyond the limit
   std::vector<FigureChange> drift;  ///< the others, if they are beyond it together; else none
   double drift_percent = 0;         ///< their sum
 };
@@ -44,8 +44,8 @@ std::string drift_text(const Trend& trend, const std::vector<PastRun>& runs);
 std::string step_text(const Trend& trend, const FigureChange& step,
                       const std::vector<PastRun>& runs);
 
-/// Adds to what a check found of a run what the runs before it tell: limits that it holds, but only
-/// since the baseline moved along; and of limits that are not met, whether they were met before.
+/// Adds findings from earlier runs to a check: limits that are met only because the baseline moved
+/// along, and, of limits that are not met, whether they were met before.
 /// @param before  runs like it, the oldest first; may be none
 void add_history(CheckResult& result, const RunRecord& run, const Budget& budget,
                  const std::vector<PastRun>& before);

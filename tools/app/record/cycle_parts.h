@@ -1,4 +1,4 @@
-// Where the cycles of each stage went on N cores, as rows: by fork, by mechanism and by kind of
+// Breakdown of each stage's cycles on N cores, as rows: by fork, by mechanism and by kind of
 // operation. They are the account of the run (sim/chip/account.h), in core-cycles over the cores of
 // the team, so that the parts of a stage add up to its cycles.
 //
@@ -20,7 +20,7 @@ inline constexpr const char* kOffloadStage = "offload";
 /// In the place of a mechanism: small parts together, as a baseline has them.
 inline constexpr std::string_view kOtherParts = "other";
 
-/// What a mechanism is, in words. Empty if there is none of that key.
+/// Description of a mechanism. Empty for unknown keys.
 std::string_view describe_mechanism(std::string_view key);
 
 struct CyclePart {

@@ -65,7 +65,7 @@ enum class Level {
 };
 
 /// @param further  statistics to keep besides, at Level::kept
-/// @throws InputError at Level::kept if it is not known where cycles went
+/// @throws InputError at Level::kept for a record without a breakdown of cycles
 RunRecord reduced(const RunRecord& record, Level level, const std::set<std::string>& further = {});
 
 /// The form without format and version, as in a line of a file that has its own.
@@ -78,7 +78,7 @@ RunRecord record_of_json(const std::string& where, const Json& json, Level least
 /// The content of a file: a statistic, a fact or a stage on a line, so that two files can be
 /// compared line by line.
 std::string record_text(const RunRecord& record);
-/// @throws InputError for what record_text() never wrote, saying what to do with files of before
+/// @throws InputError for other texts, and for older files with what to do about them
 RunRecord parse_record(const std::string& where, std::string_view text, Level least);
 
 /// The facts alone.

@@ -1,4 +1,4 @@
-// What a chip occupies, part by part, as a table for terminals and as CSV.
+// Area of a chip, part by part, as a table for terminals and as CSV.
 #pragma once
 
 #include <string>

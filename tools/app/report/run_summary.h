@@ -1,4 +1,4 @@
-// What `leviosim run` prints unless tables are asked for: whether the workload fits, the stages,
+// The summary that `leviosim run` prints without --tables: whether the workload fits, the stages,
 // and a line for each of latency, memory, energy and trajectory, on a screen of 24 lines.
 #pragma once
 
@@ -26,7 +26,7 @@ std::string latency_table(const RunResult& run, int width = table_width());
 /// Of a closed loop: lost and late frames, percentiles of the latency. Else empty.
 std::string camera_summary(const RunResult& run);
 
-/// What the frames yielded: sources of poses, which add up, keyframes, restarts of the map, mean
+/// Results of the frames: sources of poses, which add up, keyframes, restarts of the map, mean
 /// numbers of features and matches.
 std::string frame_summary(const RunResult& run);
 

@@ -1,4 +1,4 @@
-// The tables that `leviosim run --tables` prints: what a run showed, for people. Pure functions of
+// The tables that `leviosim run --tables` prints. Pure functions of
 // the result. Columns that do not fit into the width are left out; lines of text may be longer.
 #pragma once
 
@@ -24,8 +24,8 @@ std::string unmeasured_note(const RunResult& run);
 Table stages_of(const RunResult& run, const std::vector<const StageResult*>& stages,
                 std::string_view mark_of_controller);
 
-/// Where the core-cycles of the team went in the stages of the cluster, in per cent. Each row adds
-/// up to 100.0 as printed.
+/// Breakdown of the team's core-cycles in the stages of the cluster, in per cent. Each row adds up
+/// to 100.0 as printed.
 std::string breakdown_table(const RunResult& run, int width = table_width());
 
 /// Peaks in L1 and L2, and the blocks that were alive at them.

@@ -1,5 +1,5 @@
-// What became of the frames of a closed loop, derived when it is read out: how many were lost or
-// late, and how long a pose takes.
+// Frames of a closed loop that were dropped or late, and the latency of poses, derived from a run's
+// result.
 //
 // The deadline of a frame is one period of the camera after its arrival. It is missed by frames
 // that were dropped and by those whose pose came later: `missed` is both.

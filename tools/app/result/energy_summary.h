@@ -15,7 +15,7 @@ namespace leviosim::tools {
 /// A stage over the whole run, or the time without one.
 struct EnergyRow {
   std::string name;
-  std::string unit;  ///< what one call is
+  std::string unit;  ///< unit of a call: "frame", "iteration"
   bool on_controller = false;
   std::int64_t calls = 0;
   Seconds time;  ///< of all calls

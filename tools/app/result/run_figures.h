@@ -25,8 +25,8 @@ struct Statistic {
   std::string protocol = {};         ///< of accuracy, how it was measured; else empty
 };
 
-/// A figure of a run as a whole that people name. Budgets, comparisons, the history, summaries and
-/// pages walk over the rows, so a further figure is a row with `of`.
+/// A figure of a run as a whole that has a name for people. Budgets, comparisons, the history,
+/// summaries and pages walk over the rows, so a further figure is a row with `of`.
 struct FigureRow {
   std::string_view statistic;
   std::string_view unit;             ///< of the statistic
@@ -62,7 +62,7 @@ struct RecordedFrame {
   bool at_rest = false;
 };
 
-/// What the ground truth says of a run; nothing is known without one.
+/// Comparison of a run with the ground truth; empty without one.
 struct TruthSigns {
   std::optional<double> error_m;    ///< RMSE of the positions
   std::optional<double> path_m;     ///< length of the true path
@@ -76,21 +76,21 @@ struct FrameSpan {
   int last = 0;
 };
 
-/// What says whether a map can be right.
+/// Evidence for the verdict on the map.
 struct MapSigns {
   TruthSigns truth;
-  double kept_s = 0;               ///< the longest time for which the pose was kept
-  double initialising_s = 0;       ///< the longest initialisation
-  bool ends_without_pose = false;  ///< the last frame kept its pose, or still initialises
-  std::int64_t restarts = 0;
-  double duration_s = 0;
-  std::int64_t poses_left_out = 0;  ///< since they are NaN
-  std::optional<double> features;   ///< of a mean frame
+  double kept_s = 0;                ///< longest time without a new pose [s]
+  double initialising_s = 0;        ///< longest initialisation [s]
+  bool ends_without_pose = false;   ///< the last frame kept its pose, or still initialises
+  std::int64_t restarts = 0;        ///< of the map
+  double duration_s = 0;            ///< of the run [s]
+  std::int64_t poses_left_out = 0;  ///< poses that are NaN
+  std::optional<double> features;   ///< mean number of features of a frame
   std::optional<int> health;        ///< of the last frame
   int health_reasons = 0;           ///< likewise
   /// By number of the reason: the frame from which on it holds until the end.
   std::array<int, vio::kHealthReasons.size()> reason_since{};
-  std::int64_t lost_frames = 0;      ///< of health 2
+  std::int64_t lost_frames = 0;      ///< frames of health 2, lost
   FrameSpan lost;                    ///< from the first to the last of them
   std::int64_t guesses = 0;          ///< poses from before there was a map
   std::optional<int> located_from;   ///< the frame after all guesses, if they come first
@@ -142,7 +142,7 @@ void complete(RunFigures& run, const std::vector<RecordedFrame>& frames);
 /// The stage of the cluster with the highest peak of L1; null if there is none.
 const StageName* fullest_stage(const RunFigures& run);
 
-/// Between two frames of the camera. [ns]
+/// Time between two frames of the camera [ns].
 double deadline_ns(const RunFigures& run);
 
 }  // namespace leviosim::tools

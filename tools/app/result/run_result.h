@@ -27,18 +27,18 @@ using soc::Deadline;
 using soc::StageResult;
 using vio::PoseSource;
 
-/// What a stage took in one frame, of all its calls.
+/// Cycles of a stage in one frame, over all its calls.
 struct StageCycles {
   std::string_view stage;  ///< a literal of the workload, or the trace's
   Cycles cycles;
 };
 
-/// What a frame yielded, and when.
+/// The result of a frame, and its times.
 struct FrameResult : vio::FrameFacts, soc::FrameTiming {
   int index = 0;          ///< in the data set
   std::int64_t t_ns = 0;  ///< camera timestamp
   traces::StampedPose pose;
-  /// Of frames processed before, counted back from this one: where they were after all.
+  /// Corrected poses of earlier frames, by how many frames ago they were processed.
   std::vector<std::pair<int, traces::StampedPose>> earlier = {};
   std::vector<StageCycles> stage_cycles = {};  ///< on N cores, of the stages that ran, in order
 
@@ -61,7 +61,7 @@ struct L2Row {
   std::vector<work::Block> blocks;
 };
 
-/// How far times may be off, over what they are: what the ranges of the platform's numbers leave.
+/// Bands of times, as ratios to their values, from the ranges of the platform's numbers.
 struct TimeBands {
   struct Stage {
     std::string stage;
@@ -87,10 +87,10 @@ struct RunResult {
   int image_height = 0;
   std::vector<StageResult> stages;     ///< in the order of the workload
   Cycles offload;                      ///< of the cluster's jobs, outside of stages
-  std::vector<FrameResult> frames;     ///< that the front end processed
+  std::vector<FrameResult> frames;     ///< frames that the front end processed
   std::optional<CameraRecord> camera;  ///< of a closed loop
   std::vector<L2Row> l2;
-  std::vector<work::Passage> passages;  ///< through L1 in tiles, where the work was computed
+  std::vector<work::Passage> passages;   ///< through L1 in tiles, where the work was computed
   std::int64_t optimiser_published = 0;  ///< results that reached the front end
   std::int64_t optimiser_late = 0;       ///< frames at whose start the controller was still busy
   std::vector<traces::StampedPose> trajectory;
@@ -100,7 +100,7 @@ struct RunResult {
       not_comparable;  ///< why the trajectory could not be evaluated; see why_incomparable()
   std::optional<TimeBands> time_bands{};  ///< where they were asked for
   double host_seconds = 0;  ///< wall time; not part of anything that must be reproducible
-  sim::ChipConfig chip{};   ///< that the run was timed on; unused if not timed
+  sim::ChipConfig chip{};   ///< chip that the run was timed on; unused if not timed
 };
 
 }  // namespace leviosim::tools

@@ -26,11 +26,11 @@ std::optional<double> unmeasured_share(const StageResult& stage);
 Hertz clock_of(const RunResult& run, const StageResult& stage);
 double milliseconds(double cycles, Hertz clock);
 
-/// That a trajectory without gaps would have: of the frames that the camera delivered.
+/// Number of poses of a trajectory without gaps: of the frames that the camera delivered.
 std::size_t expected_poses(const RunResult& run);
 /// Why the run has no error that could be compared with another's; empty if it may have one.
 std::string why_incomparable(const RunResult& run);
-/// Poses that an alignment takes at least.
+/// Least number of poses for an alignment.
 inline constexpr std::size_t kFewestPoses = 3;
 
 /// Frames of one kind and how long they took.
@@ -52,15 +52,16 @@ struct Scenario {
 /// them.
 std::vector<Scenario> scenarios(const RunResult& run);
 
-/// What frames take by themselves, without waiting for others: of the chip, whatever the camera.
+/// Times that frames take on the chip by themselves, without waiting for others, whatever the
+/// camera.
 struct FrameTimes {
   Banded mean_ns;
   Banded p99_ns;
   Banded worst_ns;
-  std::int64_t late = 0;  ///< that take longer than the camera's period
+  std::int64_t late = 0;  ///< frames that take longer than the camera's period
   bool has_bands = false;
 
-  /// At which frames do not pile up. [1/s]
+  /// Largest frame rate at which frames do not queue up [1/s].
   double sustainable_rate() const { return 1e9 / mean_ns.value; }
 };
 /// Absent if nothing was timed.
@@ -93,7 +94,7 @@ double percent_of_nominal(Bytes used, Bytes size);
 /// that may be 102 % of a memory with room left, does not show.
 std::string of_memory(Bytes used, Bytes size);
 
-/// With so many decimals; of a path that diverged, which may have twenty digits, three digits.
+/// The value with so many decimals; of a path that diverged, three digits instead of twenty.
 std::string readable(double value, int decimals);
 
 /// Length of the estimated path [m].

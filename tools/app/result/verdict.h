@@ -32,8 +32,8 @@ const std::vector<VerdictWord>& verdict_words();
 /// Of statistics and of the signs of the map; readers find them in RunFigures::verdicts.
 Verdicts verdicts_of(const RunFigures& run);
 
-/// On paths below this, the scale says nothing of the map, nor does a small error; a large one
-/// counts as on a path of this length.
+/// On shorter paths the scale and a small error say nothing of the map; a large error is taken as a
+/// share of this length.
 inline constexpr double kShortestPath_m = 1;
 
 /// Beyond these a map is unreliable, or lost. Drift of published estimators is 1 % of the path or
@@ -42,12 +42,12 @@ inline constexpr double kShortestPath_m = 1;
 struct MapLimits {
   double error_share = 0.1;  ///< ATE over the length of the true path
   double lost_error_share = 0.25;
-  double scale = 1.25;  ///< of the estimate over the truth, or the truth over it
+  double scale = 1.25;  ///< size of the estimated path over the true one, or the inverse
   double lost_scale = 2;
-  double kept_s = 2;            ///< that the pose may be kept, frame after frame
-  double initialising_s = 5;    ///< that the initialisation may take
-  double restarts_per_s = 0.2;  ///< of the map, where there are more than two
-  double features = 20;         ///< of a mean frame; with fewer they are a reason
+  double kept_s = 2;            ///< longest time without a new pose [s]
+  double initialising_s = 5;    ///< longest initialisation [s]
+  double restarts_per_s = 0.2;  ///< restarts of the map over time, if there are more than two [1/s]
+  double features = 20;         ///< least mean number of features of a frame
 };
 
 /// By the truth where there is one, and by what the estimator says of its poses.

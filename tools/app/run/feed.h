@@ -1,4 +1,4 @@
-// What the workload is fed: the frames of a data set with their IMU samples, prepared on a host
+// The input of the workload: the frames of a data set with their IMU samples, prepared on a host
 // thread of its own while the simulation works on the frame before.
 #pragma once
 
@@ -41,9 +41,9 @@ class Feed {
   double rate_hz_;
   traces::ImageSource images_;
   vio::Rig rig_;
-  int last_ = -1;  ///< taken before
+  int last_ = -1;  ///< frame that was taken last
   std::future<traces::GrayImage> next_;
-  int next_frame_ = -1;  ///< which that is
+  int next_frame_ = -1;  ///< frame that next_ prepares
   traces::GrayImage image_;
   vio::FrameInput input_;
 };

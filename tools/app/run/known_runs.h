@@ -15,13 +15,13 @@
 
 namespace leviosim::tools {
 
-/// Of one study; for several threads at once.
+/// The replays of one study. May be used by several threads at once.
 class KnownRuns {
  public:
-  /// As replay(). @param trace  outlives the results
+  /// Same result as replay(). @param trace  outlives the results
   Replay replay(const traces::WorkTrace& trace, const RunRequest& request,
                 const ProgressCallback& progress);
-  /// How many were known.
+  /// Number of replays whose times were known.
   std::size_t repeated() const;
 
  private:

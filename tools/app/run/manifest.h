@@ -1,4 +1,4 @@
-// What a run was made from: enough to repeat it, and to see that two runs had the same inputs.
+// The inputs of a run: enough to repeat it, and to see whether two runs had the same.
 #pragma once
 
 #include <cstdint>

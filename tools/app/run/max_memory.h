@@ -1,4 +1,4 @@
-// --max-memory SIZE: what a work trace may take of the host's memory.
+// --max-memory SIZE: the host memory that a work trace may take.
 #pragma once
 
 #include <string>

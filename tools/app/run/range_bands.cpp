@@ -40,7 +40,8 @@ bool is_of_time(const platform::Parameter& parameter) {
   return true;
 }
 
-std::vector<const platform::Parameter*> ranged(const platform::ResolvedPlatform& platform) {
+std::vector<const platform::Parameter*> uncertain_numbers(
+    const platform::ResolvedPlatform& platform) {
   std::vector<const platform::Parameter*> parameters;
   for (const platform::Parameter& parameter : platform.parameters)
     if (parameter.range && is_of_time(parameter)) parameters.push_back(&parameter);
@@ -55,7 +56,7 @@ bool is_in_bands(const platform::Parameter& parameter, const sim::ChipConfig& ch
 
 std::vector<Banded> range_bands(const platform::Variants& platform, const ChipFigures& figures,
                                 unsigned threads) {
-  std::vector<const platform::Parameter*> parameters = ranged(platform.platform());
+  std::vector<const platform::Parameter*> parameters = uncertain_numbers(platform.platform());
   std::erase_if(parameters, [&](const platform::Parameter* parameter) {
     return !is_in_bands(*parameter, platform.platform().config);
   });

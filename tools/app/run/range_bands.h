@@ -1,9 +1,9 @@
-// What the ranges of a platform's numbers (platform_models/FORMAT.md) leave of figures that a chip
-// yields: every number on which times depend is set to both ends of its range, one at a time, and
-// the figures are taken again.
+// Bands of a chip's figures from the ranges of its numbers (platform_models/FORMAT.md): every
+// number on which times depend is set to both ends of its range, one at a time, and the figures are
+// computed again.
 //
-// Left out: energies, areas and what the supply allows, which no time depends on; ranges that hang
-// together, such as the halves of a cost that is known only in sum.
+// Left out: energies, areas and supply, on which no time depends; correlated ranges, such as the
+// two parts of a cost that is known only in sum.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,14 @@
 
 namespace leviosim::tools {
 
-/// Whether times depend on a number of this name.
+/// Whether times depend on the number.
 bool is_of_time(const platform::Parameter& parameter);
 
-/// Those with a range on which times depend; of the platform, which outlives them.
-std::vector<const platform::Parameter*> ranged(const platform::ResolvedPlatform& platform);
+/// The numbers of the platform with a range on which times depend. The platform outlives them.
+std::vector<const platform::Parameter*> uncertain_numbers(
+    const platform::ResolvedPlatform& platform);
 
-/// What a chip yields with one number at both ends of its range.
+/// A result with one number at both ends of its range.
 template <class T>
 struct AtEnds {
   const platform::Parameter* parameter;
@@ -30,14 +31,14 @@ struct AtEnds {
   T high;
 };
 
-/// Calls every job once, in any order, maybe on several threads.
+/// Calls every job once, in any order, possibly on several threads.
 using RunJobs = std::function<void(std::size_t, const std::function<void(std::size_t)>&)>;
 
 /// Whether an end of the range is the number itself.
 bool is_end(const platform::Parameter& parameter, double end);
 
-/// @param base  of the platform as it is
-/// @param of    T of a sim::ChipConfig; may be called by several threads
+/// @param base  the result of the platform as it is
+/// @param of    computes T for a sim::ChipConfig; may be called by several threads
 template <class T, class Of>
 std::vector<AtEnds<T>> at_ends(const platform::Variants& platform,
                                const std::vector<const platform::Parameter*>& parameters,
@@ -54,16 +55,16 @@ std::vector<AtEnds<T>> at_ends(const platform::Variants& platform,
   return all;
 }
 
-/// Whether bands are of this number, too. They are not of what compilers make of single operations
-/// (isa.ops.*.issue but of routines, isa.ops.loop_*): how many instructions they make of all that
-/// was counted was measured, or has a range, isa.unmeasured_instructions.
+/// Whether bands include this number. They leave out the instructions of single operations
+/// (isa.ops.*.issue except routines, isa.ops.loop_*): the instructions that compilers make of all
+/// operations together were measured, or have a range, isa.unmeasured_instructions.
 bool is_in_bands(const platform::Parameter& parameter, const sim::ChipConfig& chip);
 
-/// Instructions that other compilers make of measured code, for each of the compiler that it was
-/// measured with (FACTS.md#other-compilers). In bands, though no number of a platform.
+/// Instructions of other compilers over those of the compiler that the code was measured with
+/// (FACTS.md#other-compilers). Part of the bands, though no number of a platform.
 inline constexpr platform::Range kOtherCompilers{0.93, 1.27};
 
-/// The figures of one chip, always as many.
+/// The figures of one chip; always the same number of them.
 using ChipFigures = std::function<std::vector<double>(const sim::ChipConfig&)>;
 
 /// The figures with the bands of all numbers together.

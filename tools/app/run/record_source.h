@@ -16,7 +16,7 @@ class App;
 
 namespace leviosim::tools {
 
-/// The chip on which traces are replayed, and what a trace may take of memory.
+/// The chip on which traces are replayed, and the memory that a trace may take.
 struct RecordOptions : RunOptions {
   std::string memory;
 
@@ -29,18 +29,18 @@ void add_record_options(CLI::App& command, RecordOptions& options);
 /// The trace that a file is, or that a folder holds; else empty.
 std::string trace_of(const std::string& name);
 
-/// Of a folder what lies in it, unless the options name a chip; then, and of a trace, what a replay
-/// yields, on the chip of the recording if none is named. Of a CSV file what was measured.
-/// @param with_tables  else the record alone
-/// @throws InputError for what is neither, and as replay()
+/// The run that a name stands for: of a folder, the run that lies there, unless the options name a
+/// chip; then, and of a trace, its replay, on the chip of the recording if none is named; of a CSV
+/// file, the measurement. @param with_tables  false: only the record is read
+/// @throws InputError for other files, and as replay()
 RunFolder read_run(const std::string& name, const RecordOptions& options, bool with_tables);
 /// The record alone.
 RunRecord read_record(const std::string& name, const RecordOptions& options);
 
-/// Runs or replays a request, and tells how far it is.
+/// Runs or replays a request, and reports progress.
 using Compute = std::function<RunResult(const RunRequest&, const ProgressCallback&)>;
 
-/// What the folder of a run that `compute` yields would hold.
+/// The content of the run folder that `compute` would leave.
 /// @throws InputError as it does, Interrupted
 RunFolder computed_run(const std::string& name, const RunRequest& request, const Manifest& manifest,
                        const Compute& compute, bool quiet);

@@ -1,6 +1,6 @@
-// Looks on while a run happens: sees every job that a chip was given, with what its frame yielded
-// and how long it took, in the order in which the jobs ended in simulated time. What an observer
-// needs to re-time the run elsewhere is in the jobs; native runs have none.
+// Observer of a run: gets every job of the chip, with the result of its frame and its timing, in
+// the order in which the jobs ended in simulated time. The jobs hold all that is needed to time the
+// run on another chip; native runs have none.
 //
 // The observer cannot change anything. References are valid during the call; a copied job stays
 // valid as long as the program or, in a replay, as the trace: the names in it are literals of the
@@ -30,7 +30,7 @@ class RunObserver {
   /// As of soc::Observer.
   virtual bool wants_steps() const { return false; }
   /// The run is about to begin. @param frames  of the camera
-  /// @throws InputError if the run is none that can be looked at as was asked
+  /// @throws InputError if the run cannot be observed as requested
   virtual void on_start([[maybe_unused]] int frames) {}
   virtual void on_front_end(const FrontEndJob&) {}
   virtual void on_optimiser(const OptimiserJob&) {}

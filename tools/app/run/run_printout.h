@@ -1,5 +1,6 @@
-// What commands that run a workload print of it: the summary, the tables that --tables names, or
-// with --json the record.
+// The printout of commands that run a workload: the summary, the tables that --tables names, or
+// with
+// --json the record.
 #pragma once
 
 #include <string>

@@ -24,12 +24,12 @@ using soc::ProgressCallback;
 
 struct WorkRecording;
 
-/// Which times get bands (range_bands.h).
+/// The times that get bands (range_bands.h).
 enum class TimeBandsOf : std::uint8_t {
   nothing,
-  slowest_frame,  ///< which stands for all; on the thread of the run
-  team,           ///< frames and stages
-  team_and_one_core
+  slowest_frame,     ///< whose band stands for all frames; computed on the thread of the run
+  team,              ///< frames and stages on N cores
+  team_and_one_core  ///< and stages on one core
 };
 
 struct RunRequest {
@@ -46,7 +46,7 @@ struct RunRequest {
   platform::ResolvedPlatform platform;    ///< unused if native
   /// The closed loop. Without, every recorded frame is delivered and waits until it is processed.
   std::optional<CameraRequest> camera;
-  /// Whether the trajectory is compared with the truth. What diverged cannot be, and is refused.
+  /// Whether the trajectory is compared with the truth. A trajectory that diverged is refused.
   bool evaluate = true;
   TimeBandsOf time_bands = TimeBandsOf::nothing;
   bool on_one_core = true;             ///< whether jobs are also timed on one core

@@ -22,10 +22,10 @@ namespace leviosim::tools {
 /// stays as it is.
 outputs::OutputRequest out_request(const RunOptions& options, const char* option = "--out");
 
-/// What --data stands for: the folder, and the one in it that may be a link.
+/// The folders that --data names: the recording, and the one in it that may be a link.
 std::vector<std::filesystem::path> data_inputs(const std::string& data);
 
-/// About what a run with all frames will write, rather more. [bytes]
+/// Estimate, on the high side, of the size of the results of a run with all frames [bytes].
 std::uint64_t expected_bytes(const RunRequest& request, bool record);
 
 /// The folder that --data names; makes the synthetic flight if it is asked for and not there yet.

@@ -1,9 +1,8 @@
-// How far the times of a run may be off: a few of its frames, timed again with every uncertain
+// Uncertainty of the times of a run: a sample of its frames, timed again with every uncertain
 // number of the platform at both ends of its range.
 //
-// Left out: other frames than those kept, and of forks of one name in a stage, such as the
-// hypotheses of a RANSAC, all but a few. They differ in how much they have of what a number
-// changes, which is small beside the bands.
+// Left out: frames outside the sample, and most of the forks of one name in a stage, such as the
+// hypotheses of a RANSAC. Their relative bands differ from those of the sample by little.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // A source of recorded work: what `leviosim replay` runs on. It computes nothing, so where the chip
-// at hand is faster or slower than that of the recording, the work stays what it was. What the
-// algorithm would have seen otherwise is noted frame by frame:
+// at hand is faster or slower than that of the recording, the work stays the same. Differences in
+// what the algorithm would have seen are noted frame by frame:
 //
 //   - another result of the optimiser, or none, when the frame began;
 //   - an optimisation that would not have begun, since the optimiser is still busy: it is left out;
@@ -17,10 +17,10 @@ namespace leviosim::tools {
 /// How a frame began, in the recording and now.
 struct FrameComparison {
   struct Start {
-    std::int64_t waited_ns = 0;  ///< since the camera delivered it
+    std::int64_t waited_ns = 0;  ///< wait since the camera delivered it [ns]
     bool optimiser_busy = false;
     bool optimised = false;  ///< an optimisation began
-    int seen = -1;           ///< as FrameStart::seen
+    int seen = -1;           ///< optimisation whose result it saw, as FrameStart::seen
   };
   int frame = 0;
   Start recorded;

@@ -1,4 +1,4 @@
-// Figures with their bands, and how what single numbers do to a figure becomes its band.
+// Figures with their bands, and the combination of single effects into a band.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@ struct Banded {
   }
 };
 
-/// The band of a figure that hangs on numbers which err independently of each other: the root of
-/// the sum of the squares of what each changes, below and above.
+/// The band of a figure that depends on numbers with independent errors: the root of the sum of the
+/// squares of each one's effect, below and above.
 class BandOf {
  public:
   explicit BandOf(double value) : value_(value) {}

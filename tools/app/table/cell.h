@@ -1,4 +1,4 @@
-// What stands in a cell of a table: nothing, a number, a number with its band, or words. Values
+// The value in a cell of a table: nothing, a number, a number with its band, or words. Values
 // stay numbers until they are rendered: table_files.h for programs, terminal_table.h for people.
 #pragma once
 
@@ -42,7 +42,7 @@ class Cell {
 /// A value of a file, as it is spelled there: a number where it is one.
 Cell spelled(std::string_view text);
 
-/// What stands in a cell of which nothing is known.
+/// Shown for a cell without a value.
 inline constexpr const char* kNothing = "–";
 
 /// With so many decimals; `otherwise` for what does not exist.

@@ -1,5 +1,5 @@
 // Tables, of which each column is described once: for the terminal, for Markdown, CSV, JSON and
-// pages. What it looks like there is in terminal_table.h and table_files.h.
+// pages. terminal_table.h and table_files.h render them.
 #pragma once
 
 #include <functional>
@@ -17,12 +17,12 @@ inline constexpr auto kRight = Align::Right;
 /// As many digits as the number has.
 inline constexpr int kAllDigits = -1;
 
-/// What a column is, without its rows. One that has no title is only in files, one that has no key
-/// only for people.
+/// Description of a column, without its rows. A column without a title is only in files, one
+/// without a key only for people.
 struct Head {
   std::string title = {};  ///< for people
   Align align = kRight;
-  int rank = 0;                    ///< where the width is short, the highest rank is left out first
+  int rank = 0;                    ///< columns of the highest rank are left out first, for width
   int shown = kAllDigits;          ///< decimals for people
   const char* nothing = kNothing;  ///< what people see where there is no value
   std::string key = {};       ///< for files: its name, with the unit in which the value is kept
@@ -30,7 +30,7 @@ struct Head {
   std::string unit = {};      ///< for people
   double scale = 1;           ///< from the value to that unit
   bool is_banded = false;     ///< in files: two more columns, for the ends of the band
-  bool is_setup = false;      ///< on a page: what was set; else what came out of it
+  bool is_setup = false;      ///< on a page: an input of the study; else a result
   bool more_is_better = false;
 };
 

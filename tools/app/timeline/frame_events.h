@@ -1,5 +1,5 @@
-// When everything of a run happened: frames, stages, the steps of a stage, what each core did in a
-// step, transfers, iterations of the optimiser. Plain data, in simulated time: TimelineCollector
+// Events of a run with their times: frames, stages, the steps of a stage, the work of each core in
+// a step, transfers, iterations of the optimiser. Plain data, in simulated time: TimelineCollector
 // fills it in, writers and pictures read it.
 //
 // Within a work segment the shares of waiting are known, but not their order (contention.h).
@@ -20,20 +20,20 @@
 
 namespace leviosim::tools {
 
-/// What one core did in a step. Cycles are of the cluster.
+/// The work of one core in a step. Cycles are of the cluster.
 struct CoreEvents {
   int core = 0;  ///< the master's number is the size of the team
   sim::Time begin;
   sim::Time end;
-  Cycles worked;               ///< waits for shared units included
-  Cycles idle;                 ///< of a worker, from its end to that of the fork
-  sim::MechanismCycles split;  ///< of what it worked; they add up
+  Cycles worked;               ///< cycles of its work, with waits for shared units
+  Cycles idle;                 ///< cycles of a worker from its end to that of the fork
+  sim::MechanismCycles split;  ///< breakdown of `worked`; adds up to it
 };
 
 /// Data in one direction of the DMA.
 struct TransferEvents {
   work::Direction direction = work::Direction::L2ToL1;
-  sim::Time begin;  ///< of its first data
+  sim::Time begin;  ///< time of its first data
   sim::Time end;
   Bytes bytes;
   int transfers = 1;
@@ -53,11 +53,11 @@ struct StepEvents {
   sim::Time begin;
   sim::Time end;
   Cycles cycles;
-  int steps = 1;                  ///< that were joined
+  int steps = 1;                  ///< number of steps that were joined
   double synchronisation = 0;     ///< of forks: cycles of starting and of the barrier
-  Cycles serial;                  ///< that the team idles since the master works alone
-  Cycles transfer;                ///< that the team idles since the master waits for the DMA
-  std::vector<CoreEvents> cores;  ///< that worked
+  Cycles serial;                  ///< idle cycles of the team while the master works alone
+  Cycles transfer;                ///< idle cycles of the team while the master waits for the DMA
+  std::vector<CoreEvents> cores;  ///< cores that worked
   std::vector<TransferEvents> transfers;
 };
 
@@ -82,8 +82,8 @@ struct FrameEvents {
 
 /// An iteration of an optimisation, on the controller.
 struct IterationEvents {
-  int frame = 0;      ///< at whose start the snapshot was taken
-  int iteration = 0;  ///< from 0
+  int frame = 0;      ///< frame at whose start the snapshot was taken
+  int iteration = 0;  ///< number of the iteration, from 0
   bool last = false;  ///< its result was published at the end
   sim::Time begin;
   sim::Time end;

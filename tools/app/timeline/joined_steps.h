@@ -1,5 +1,5 @@
-// Joins steps that are too short to be seen apart, so that a frame of thousands of them can still
-// be shown. What is joined keeps its sums: cycles of each core by what they went to, bytes moved.
+// Joins steps that are too short to be told apart, so that a frame of thousands of them can still
+// be shown. Sums are kept: the cycles of each core by mechanism, and the bytes moved.
 #pragma once
 
 #include "tools/app/timeline/frame_events.h"

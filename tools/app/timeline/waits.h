@@ -1,4 +1,4 @@
-// What a core waits for while it works, as the account of cycles knows it: names, and the cycles of
+// The waits of a core while it works, from the account of cycles: their names, and the cycles of
 // each in a work segment.
 #pragma once
 

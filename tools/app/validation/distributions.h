@@ -1,5 +1,5 @@
-// How the inputs of the stages are distributed over a run of `levio`, beside those of the released
-// program on the 300 frames of MH_01 (published/released_inputs.csv).
+// Distributions of the stages' inputs over a run of `levio`, beside those of the released program
+// on the 300 frames of MH_01 (published/released_inputs.csv).
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What each frame of a run did and cost, stage by stage. A run's sums (run_result.h) mix frames of
+// Work and cycles of each frame of a run, stage by stage. A run's sums (run_result.h) mix frames of
 // different kinds; published means stand for frames of one kind.
 #pragma once
 

@@ -1,6 +1,6 @@
-// Stages that run whichever RANSAC a frame takes, on either path, and weighed as the paper's frames
-// are: it prints that 42.7 % of its frames took EPnP and 57.3 % the 8-point algorithm. A flight
-// that takes EPnP more often has other means, since frames on this path have more matches.
+// Mean cycles of the stages that run on both paths (EPnP and 8-point), by path, and weighted by the
+// paper's shares: 42.7 % of its frames took EPnP and 57.3 % the 8-point algorithm. Frames on the
+// EPnP path have more matches, so a flight with another share has other means.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct StageOnPaths {
   struct Means {
     std::optional<double> epnp;         ///< of frames that ran EPnP alone
     std::optional<double> eight_point;  ///< of frames that ran the 8-point algorithm
-    std::optional<double> weighed;      ///< of all, in the paper's shares
+    std::optional<double> weighed;      ///< of both, weighted by the paper's shares
   };
   std::string_view key;  ///< of the stage, in names of references
   std::string_view title;

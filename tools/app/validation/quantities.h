@@ -1,5 +1,5 @@
-// The figures of a run that published ones are compared with, by name. How each is formed from the
-// frames is said here and nowhere else:
+// The figures of a run that are compared with published ones, by name, and how each is computed
+// from the frames:
 //
 //   compute.STAGE.single, .multi [kcycles]  mean over the frames that the average stands for
 //                                           (frame_log.h), on one core and on N
@@ -34,7 +34,7 @@ namespace leviosim::tools {
 struct Quantity {
   std::string name;
   std::string unit;
-  std::optional<double> value;  ///< absent if the run shows nothing of it
+  std::optional<double> value;  ///< absent if the run has none
 };
 
 /// In a fixed order, whatever the run shows.

@@ -22,7 +22,7 @@ struct Reference {
   double value = 0;     ///< never 0 if the tolerance is relative
   bool limit = false;   ///< the value is an upper limit ("<50") and not an expectation
   std::string unit;     ///< of the quantity
-  Deviation tolerance;  ///< that the project aims at
+  Deviation tolerance;  ///< largest error that the project aims at
   bool met = true;
   std::string reason;           ///< if not met: what is missing
   std::optional<double> guard;  ///< if not met: error that may not be exceeded, as the tolerance

@@ -28,12 +28,12 @@ struct InputFigure {
 struct NormalisedFigure {
   std::string stage;
   std::string unit;                        ///< "pixel", "pair of descriptors", …
-  std::optional<double> units;             ///< in a mean call
+  std::optional<double> units;             ///< units of work in a mean call
   std::optional<double> single;            ///< cycles for a unit on one core
   std::optional<double> parallel;          ///< on N cores
   std::optional<double> paper_units;       ///< if the paper or its release fix them
   std::optional<double> paper_single;      ///< cycles of a mean call on one core
-  std::optional<double> explaining_units;  ///< that give the paper's one-core value at our cost
+  std::optional<double> explaining_units;  ///< units that would give the paper's one-core cycles
 
   /// The paper's cycles for a unit, if both are known.
   std::optional<double> paper_per_unit() const {

@@ -29,12 +29,12 @@ struct StageSpan {
 
 /// A frame with the account of its cycles. Times are since its arrival.
 struct ExplainedFrame {
-  int number = 0;  ///< in the run, from 0
+  int number = 0;  ///< number in the run, from 0
   FrameResult result;
-  double waited_ms = 0;  ///< for the front end, which was busy with frames before
-  double own_ms = 0;     ///< from the start of its work to its pose
+  double waited_ms = 0;  ///< wait for the front end, which was busy with earlier frames
+  double own_ms = 0;     ///< time from the start of its work to its pose
   std::vector<StageSpan> stages;
-  TimedParts parts;  ///< of this frame alone
+  TimedParts parts;  ///< breakdown of this frame's cycles
 
   double latency_ms() const { return waited_ms + own_ms; }
 };
@@ -45,7 +45,7 @@ int median_frame(const std::vector<FrameResult>& frames);
 /// The frame whose pose came latest after its image; of equal ones the first.
 int slowest_frame(const std::vector<FrameResult>& frames);
 
-/// Looks on while a recording is timed, and keeps what two frames took.
+/// Observer of a replay that keeps the times of two frames.
 class FrameWatcher : public RunObserver {
  public:
   FrameWatcher(const sim::ChipConfig& chip, int cores, int frame, int other);
@@ -62,7 +62,7 @@ class FrameWatcher : public RunObserver {
   std::array<ExplainedFrame, 2> frames_;
 };
 
-/// What a stage took in both frames, and the mechanism that explains most of the difference.
+/// Times of a stage in both frames, and the mechanism that explains most of the difference.
 struct StageDifference {
   std::string stage;
   double median_ms = 0;

@@ -88,8 +88,8 @@ LoopOutcome LoopCloser<P>::visit(const LoopView<P>& view) {
   const auto stage = machine_.stage(stages::kLoopVerification);
   const std::optional<Hypothesis> found = only_hypothesis(places, view, query, candidates);
   if (!found || !confirms(*found, view.T_odometry_camera.t)) return outcome;
-  bound_at_ = travelled_;
-  bound_to_ = found->place_travelled;
+  confirmed_at_ = travelled_;
+  confirmed_place_ = found->place_travelled;
   const ConfirmationOptions& known = options_.confirmation;
   if (are_close(found->T_world_odometry, T_world_odometry_, view.T_odometry_camera.t,
                 F(known.known_position), F(known.known_yaw)))
@@ -119,8 +119,8 @@ PlaceQuery<P> LoopCloser<P>::query_of(const LoopView<P>& view, Words signature) 
   return {T_world_odometry_ * view.T_odometry_camera.t,
           turned<P>(sincos_of<P>(T_world_odometry_.yaw), optical_axis(view.T_odometry_camera)),
           travelled_,
-          bound_at_,
-          bound_to_,
+          confirmed_at_,
+          confirmed_place_,
           signature};
 }
 

@@ -1,5 +1,5 @@
-// Loop closure beside an odometry that knows nothing of it: some views are kept as places, later
-// views are recognised at them, and what the two say about the drift moves the estimate.
+// Loop closure beside an odometry that it does not change: some views are kept as places, later
+// views are recognised there, and the drift between the two poses corrects the estimate.
 //
 // A view does all of its recognition in its own frame; the frames after one that closed a loop take
 // a step of the pose graph each. A closure needs several views that are recognised, by places
@@ -39,9 +39,9 @@ struct LoopView {
   Pose<P> T_odometry_camera;
 };
 
-/// What a view came to.
+/// The result of a view.
 struct LoopOutcome {
-  int places = 0;    ///< that are kept
+  int places = 0;    ///< places that are kept
   int removed = 0;   ///< 1 if a place was removed for this one
   int closures = 0;  ///< 1 if a loop was closed
 };
@@ -78,13 +78,13 @@ class LoopCloser {
   /// Views that are remembered to confirm what later ones say.
   static constexpr int kRecent = 8;
 
-  /// What recognising a place says.
+  /// The correction that a recognised place suggests.
   struct Hypothesis {
     YawTransform<P> T_world_odometry;
     Closure<P> closure;
-    F place_travelled;  ///< path until the place, m
-    F travelled;        ///< path until the view, m
-    bool ambiguous;     ///< another place says something else
+    F place_travelled;  ///< path at the place [m]
+    F travelled;        ///< path at the view [m]
+    bool ambiguous;     ///< another place suggests another correction
   };
 
   void follow_path(const Pose<P>& T_odometry_camera);
@@ -104,21 +104,19 @@ class LoopCloser {
   work::Machine& machine_;
   PlaceList<P> places_;
   PlaceFeatures<P> features_;
-  // Of the path, in m.
-  F travelled_ = 0.0f;
-  F bound_at_ = 0.0f;                 ///< where views last bound the estimate to a place …
-  F bound_to_ = 0.0f;                 ///< … that was visited there
+  F travelled_ = 0.0f;                ///< path so far [m]
+  F confirmed_at_ = 0.0f;             ///< path at the last confirmed recognition [m] …
+  F confirmed_place_ = 0.0f;          ///< … and at the place recognised there [m]
   std::optional<Pose<P>> last_view_;  ///< T_odometry_camera
   // Of the views that were recognised last.
   std::array<Hypothesis, kRecent> recent_{};
   int recent_count_ = 0;  ///< ever; the newest is at (recent_count_ − 1) mod kRecent
   levio::ShiftRegister<P> random_{0x2545f491u};  ///< of RANSAC
-  // Of the correction.
-  int steps_left_ = 0;
-  bool closed_ = false;
-  float time_left_ = 0;                                             ///< until it is applied, s
-  YawTransform<P> T_world_odometry_ = YawTransform<P>::identity();  ///< that the graph says
-  YawTransform<P> applied_ = YawTransform<P>::identity();
+  int steps_left_ = 0;                           ///< steps of the pose graph that are due
+  bool closed_ = false;                          ///< a loop was closed
+  float time_left_ = 0;  ///< time until the correction is applied in full [s]
+  YawTransform<P> T_world_odometry_ = YawTransform<P>::identity();  ///< correction by the graph
+  YawTransform<P> applied_ = YawTransform<P>::identity();           ///< part of it that is applied
 };
 
 }  // namespace leviosim::vio

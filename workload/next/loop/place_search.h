@@ -1,6 +1,6 @@
-// Which places a view is compared with: those that lie within what the estimate may have drifted
-// and that were looked at from about the same direction, those first whose signature is most like
-// the view's. Team fork: "search".
+// Candidate places for a view: those within the estimate's possible drift that were seen from about
+// the same direction, ordered by how similar their signatures are to the view's. Team fork:
+// "search".
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace leviosim::vio {
 
-/// A view, by the present estimate.
+/// Where a view was taken, by the present estimate.
 template <class P>
 struct PlaceQuery {
-  Vec3<P> position;           ///< corrected, m
-  Vec3<P> axis;               ///< of the camera, in the corrected world
-  typename P::F32 travelled;  ///< until now, m
-  typename P::F32 bound_at;   ///< path until the estimate was last bound to a place, m …
-  typename P::F32 bound_to;   ///< … and until that place
+  Vec3<P> position;                 ///< corrected, m
+  Vec3<P> axis;                     ///< of the camera, in the corrected world
+  typename P::F32 travelled;        ///< path so far [m]
+  typename P::F32 confirmed_at;     ///< path at the last confirmed recognition [m] …
+  typename P::F32 confirmed_place;  ///< … and at the place recognised there [m]
   typename P::template Span<typename P::U32> signature;
 };
 
@@ -28,15 +28,17 @@ struct PlaceCandidates {
   int count = 0;
 };
 
-/// How far the estimate may have drifted since a place was visited [m]: by the way since then, or
-/// from there to the place that it was bound to, and since.
+/// How far the estimate may have drifted since a place was visited [m]: over the path since then,
+/// or, if that is shorter, over the path since the last confirmed recognition and the one from its
+/// place to this place.
 template <class P>
 typename P::F32 drift_gate(const SearchOptions& options, const PlaceQuery<P>& query,
                            typename P::F32 travelled_at_place) {
   using F = typename P::F32;
   const F since = query.travelled - travelled_at_place;
-  const F bound = query.travelled - query.bound_at + work::abs(query.bound_to - travelled_at_place);
-  return F(options.gate_share) * work::min(since, bound) + F(options.gate);
+  const F confirmed =
+      query.travelled - query.confirmed_at + work::abs(query.confirmed_place - travelled_at_place);
+  return F(options.gate_share) * work::min(since, confirmed) + F(options.gate);
 }
 
 /// Works inside a stage.

@@ -36,7 +36,7 @@ bool BackEnd<P>::begin() {
   aligns_ = profile_.initialises() && !map_.aligned;
   const int least = aligns_ ? profile_.alignment.min_keyframes : 2;
   if (work::value(graph_.keyframe_count()) < least) return false;
-  if (options_.joint && is_settled()) return false;
+  if (options_.joint && has_enough_snapshots()) return false;
   const auto stage = machine_.stage(stages::kOptimiserUpdate);
   determined_ = false;
   if (aligns_) {
@@ -69,7 +69,7 @@ bool BackEnd<P>::begin() {
 /// Whether the newest keyframe has had its share of iterations. More of them only wander along what
 /// the window hardly determines, and move a vehicle that stands still.
 template <class P>
-bool BackEnd<P>::is_settled() {
+bool BackEnd<P>::has_enough_snapshots() {
   const int newest = work::value(I32(graph_.keyframe_ids[graph_.newest_keyframe()]));
   if (newest != newest_) snapshots_ = 0;
   newest_ = newest;

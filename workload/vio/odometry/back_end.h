@@ -1,5 +1,5 @@
 // The back end: the sliding-window optimiser on the fabric controller. It works on a snapshot of
-// the pose graph while the front end goes on, and publishes what it found when it is done.
+// the pose graph while the front end goes on, and publishes its result when it is done.
 #pragma once
 
 #include "sim/work/machine.h"
@@ -30,7 +30,7 @@ class BackEnd {
   using F = typename P::F32;
   using I32 = typename P::I32;
 
-  bool is_settled();
+  bool has_enough_snapshots();
   WindowFit fit_of(const IterationReport& report) const;
   void publish_alignment();
   void retire_unplaced();
@@ -49,16 +49,16 @@ class BackEnd {
   LmState<P> damping_;
   AlignmentState<P> alignment_;
   int newest_ = -1;          ///< serial number of the newest keyframe
-  int snapshots_ = 0;        ///< that were taken of it
-  WindowFit fit_;            ///< before the last iteration
+  int snapshots_ = 0;        ///< snapshots taken of it
+  WindowFit fit_;            ///< fit before the last iteration
   bool solved_ = false;      ///< the system of this snapshot could be solved
   bool aligns_ = false;      ///< this snapshot is of a map that is not aligned yet
-  bool ambiguous_ = false;   ///< when it last began from several starts, two scales were left
-  bool compares_ = false;    ///< its alignment is to begin from several starts
-  bool compared_ = false;    ///< this snapshot's does, or did
+  bool ambiguous_ = false;   ///< the last alignment from several starts left two scales
+  bool compares_ = false;    ///< the next alignment begins from several starts
+  bool compared_ = false;    ///< the alignment of this snapshot began from several starts
   bool arrived_ = false;     ///< its alignment is at its minimum: more iterations gain nothing
   bool converged_ = false;   ///< its alignment is near its minimum
-  bool determined_ = false;  ///< its alignment has converged, and tells enough
+  bool determined_ = false;  ///< its alignment has converged, and its uncertainty is small enough
 };
 
 }  // namespace leviosim::vio

@@ -1,18 +1,19 @@
-// What the odometry knows of its map without the truth, from numbers that its parts have anyway:
+// The odometry's judgement of its map without ground truth, from numbers that its parts compute
+// anyway:
 //
-//   scale        is not known before the map is aligned; then full windows say how uncertain it is.
-//                They say it of the minimum that they are in, which may be a wrong one: so by how
-//                much they change the length of poses that are corrected still is added to it
-//   consistency  residuals of images, IMU and past in the window, against the noise assumed of them
-//   bias         of the accelerometer: one that no sensor has explains a path that was not flown
+//   scale        unknown before the map is aligned; then full windows give its uncertainty. A
+//                window in a wrong minimum underestimates it, so the changes that windows make to
+//                the length of the path are added
+//   consistency  residuals of images, IMU and prior in the window, against their assumed noise
+//   bias         of the accelerometer: a wrong path shows as a bias that no sensor has
 //   tracking     share of the matches with landmarks that agree with the pose, over a second of
 //                frames that have such a pose
-//   drift        as a share of the path: the uncertainty of the scale with which each part of it
-//                was flown, all of a part that contradicts the IMU or whose window could not be
-//                solved, what poses that the IMU alone moved on are wrong by, what images put right
-//                when they came back, and what may be missing where a map was lost. It stays, for
-//                nothing undoes it, and matters less the longer the path gets. Poses that wait for
-//                the alignment are corrected until the map has settled: they have its present scale
+//   drift        uncertainty of the path, as a share of its length. The sum, over its parts, of
+//                the scale's uncertainty; of the whole part where it contradicts the IMU or its
+//                window could not be solved; of the error of poses from the IMU alone; of the
+//                correction when images came back; and of what may be missing where a map was
+//                lost. It never shrinks, but weighs less as the path grows. Poses that wait for
+//                the alignment have the map's present scale
 //
 // A few operations a frame, which are not counted.
 #pragma once
@@ -32,7 +33,7 @@ class MapHealth {
   /// @param profile, map  outlive this
   MapHealth(const Profile& profile, const MapStatus& map) : profile_(profile), map_(map) {}
 
-  /// The optimiser has made what it found visible.
+  /// The optimiser has published its results.
   void take_window();
   /// @param report  of a frame, health excepted
   /// @param dt      since the frame before [s]
@@ -56,13 +57,13 @@ class MapHealth {
   bool was_aligned_ = false;
   bool restarted_ = false;     ///< an aligned map was given up; the next one is not aligned yet
   bool inconsistent_ = false;  ///< the last window
-  float doubted_s_ = 0;        ///< for which an inconsistent window still counts
-  float blind_s_ = 0;          ///< that the IMU alone has carried the pose for
+  float doubted_s_ = 0;        ///< time for which an inconsistent window still counts [s]
+  float blind_s_ = 0;          ///< time for which the IMU alone has moved the pose on [s]
   float tracked_ = 1;          ///< share of the matches that agree, over a second
-  float open_m_ = 0;           ///< of the path, whose poses are corrected still
-  float path_m_ = 0;           ///< of the rest
-  float drift_m_ = 0;
-  std::vector<EarlierPose> earlier_;  ///< as the last frame found them
+  float open_m_ = 0;           ///< path whose poses are still corrected [m]
+  float path_m_ = 0;           ///< path before it [m]
+  float drift_m_ = 0;          ///< uncertainty of that path [m]
+  std::vector<EarlierPose> earlier_;  ///< corrected poses of the last frame
   float corrections_ = 0;             ///< relative changes of their length, summed over a second
 };
 

@@ -233,7 +233,8 @@ Sensitivity sensitivity(const platform::Variants& platform, int workers,
   const auto times = [&](const sim::ChipConfig& chip) { return time_on(chip, workers, trace); };
   result.base = times(platform.config({}));
   const auto run = [&](std::size_t count, const auto& job) { run_all(count, options, job); };
-  for (auto& ends : at_ends(platform, ranged(platform.platform()), result.base, times, run))
+  for (auto& ends :
+       at_ends(platform, uncertain_numbers(platform.platform()), result.base, times, run))
     result.swings.push_back({*ends.parameter, std::move(ends.low), std::move(ends.high),
                              is_in_bands(*ends.parameter, platform.platform().config)});
   std::stable_sort(result.swings.begin(), result.swings.end(), [&](const Swing& a, const Swing& b) {

@@ -22,8 +22,8 @@ namespace leviosim::tools {
 struct StageOnOneCore {
   std::string_view title;
   double reference = 0;     ///< the paper's cycles
-  double cycles = 0;        ///< with the factor 1
-  double instructions = 0;  ///< of these, what the factor multiplies: no routines, no waits
+  double cycles = 0;        ///< cycles with the factor 1
+  double instructions = 0;  ///< part that the factor multiplies: without routines and waits
 
   double with(double factor) const { return cycles + (factor - 1) * instructions; }
 };

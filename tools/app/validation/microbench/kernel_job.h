@@ -15,7 +15,7 @@ struct KernelJob {
   MicrobenchRow row{};  ///< with nothing simulated yet
   work::Job job{};
   work::Job left_out{};  ///< whose time is not in the published figure: the fork of one core
-  double calls = 1;      ///< that the figure is of
+  double calls = 1;      ///< number of calls that the figure is of
 
   double cycles_on(const sim::ChipConfig& chip) const;
 };

@@ -20,7 +20,7 @@ struct MicrobenchRow {
   double reference = 0;       ///< or the low end of what the sources allow
   double reference_high = 0;  ///< the same as reference where they agree
   double simulated = 0;
-  std::optional<Banded> band = std::nullopt;  ///< of what is simulated
+  std::optional<Banded> band = std::nullopt;  ///< band of the simulated value
   double tolerance = 0.05;                    ///< largest error that is accepted, relative
   /// Of a row that is known to miss it: the error that it may not exceed.
   std::optional<double> guard = std::nullopt;
