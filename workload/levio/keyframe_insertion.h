@@ -1,4 +1,4 @@
-// What a frame that becomes a keyframe leaves behind, as the released program does it
+// Insertion of a keyframe into the map as the released program does it
 // (PARAMETERS.md#triangulation): every match without a landmark at either end is triangulated and
 // tested in both views, by the master alone. The map and the keyframe go whole, however full they
 // are.

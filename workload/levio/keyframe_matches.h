@@ -11,8 +11,8 @@ namespace leviosim::vio::levio {
 template <class P>
 void match_keyframe(const FrontEndState<P>& state, Frame<P>& frame);
 
-/// Sum over the matches of how far they have moved, in normalised coordinates, whatever moved them:
-/// rotation is not undone (PARAMETERS.md#keyframes). Works inside a stage.
+/// Sum over the matches of their motion in normalised coordinates; rotation is not undone
+/// (PARAMETERS.md#keyframes). Works inside a stage.
 template <class P>
 typename P::F32 total_motion(const FrontEndState<P>& state, const Frame<P>& frame);
 

@@ -12,8 +12,7 @@
 //                                           that RANSAC, from the means above: the paper's 62.9 %
 //                                           is 10323 of 2926 + 1033 + 2128 + 10323
 //   latency.KIND [ms]                       mean time of the front end over the frames of a kind,
-//   on
-//                                           N cores, without waiting for the frame before; frames
+//                                           on N cores, without waiting for the frame before; frames
 //                                           that ran both RANSACs are of no kind
 //   latency.mean, latency.single_core [ms]  over all frames but the first; on N cores and on one
 //   memory.STAGE.l1_single, .l1_parallel [kB of 1000 bytes]   highest peak of all frames

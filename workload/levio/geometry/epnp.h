@@ -15,7 +15,7 @@ namespace leviosim::vio::levio {
 inline constexpr int kEpnpSample = 4;  ///< matches
 inline constexpr int kMostEpnpRotations = 120;
 inline constexpr float kEpnpTolerance = 1e-8f;  ///< of the rotations, at a Frobenius norm of 1
-/// What a metre behind the camera adds to a reprojection error, px.
+/// Penalty on a reprojection error for each metre behind the camera [px/m].
 inline constexpr float kDepthPenalty = 1000.0f;
 
 template <class P>

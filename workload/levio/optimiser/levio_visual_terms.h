@@ -20,8 +20,7 @@ VisualUse add_visual_terms(const Window<P>& window, const PixelModel<P>& model,
                            typename P::template Span<typename P::Byte> cleared,
                            const ReducedSystem<P>& system, typename P::F32& cost);
 
-/// Puts back the points of `trial` that their step led out of sight, where they are better off
-/// unmoved.
+/// Resets the points of `trial` that the step moved out of view, if their cost is lower unmoved.
 /// @return the cost of all observations at `trial` then
 template <class P>
 typename P::F32 settle_points(const Window<P>& window, const WindowState<P>& trial,
