@@ -15,6 +15,7 @@ struct FormerCommand {
 inline constexpr std::array kFormerCommands{
     FormerCommand{"explore", "leviosim ablate --vary paper"},
     FormerCommand{"calibrate", "leviosim validate --fit"},
+    FormerCommand{"image-statistics", "tools/research/image_statistics.py DIR"},
 };
 
 }  // namespace leviosim::tools
