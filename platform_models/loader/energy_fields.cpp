@@ -160,6 +160,11 @@ std::vector<Field> soc_energy_fields() {
           &E::soc, &E::Soc::cycle),
       of_energy(power("energy.soc.static", "power of the rest of the chip at any clock"), &E::soc,
                 &E::Soc::static_power),
+      of_energy(event("energy.external.byte", "a byte from or to external memory, with its pins"),
+                &E::external, &E::External::byte),
+      of_energy(power("energy.external.static",
+                      "external memory that keeps something: refresh and standby"),
+                &E::external, &E::External::static_power),
   };
 }
 
@@ -266,6 +271,7 @@ EnergyGroup energy_group_of(const Field& field) {
   const auto begins = [&](const char* with) { return field.path.rfind(with, 0) == 0; };
   if (begins("area.")) return EnergyGroup::Area;
   if (!begins("supply.") && !begins("energy.")) return EnergyGroup::None;
+  if (begins("energy.external.")) return EnergyGroup::None;  // not every chip has such a memory
   if (begins("energy.by_size.")) return EnergyGroup::BySize;
   const bool fixed = std::find(kFixed.begin(), kFixed.end(), field.path) != kFixed.end();
   return fixed ? EnergyGroup::Fixed : EnergyGroup::Always;

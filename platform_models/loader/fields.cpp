@@ -360,6 +360,10 @@ void add_controller(Table& table) {
 /// A chip need not have external memory.
 void add_external_memory(Table& table) {
   table.add(
+      optional(quantity("controller.external.size", kSize, 0, kMaxSize,
+                        "size of external memory, which holds what L2 has no room for")),
+      [](auto& chip) -> auto& { return chip.controller.external.size; });
+  table.add(
       optional(quantity("controller.external.latency", kTime, 0, 1,
                         "time of a transfer from or to external memory without its data")),
       [](auto& chip) -> auto& { return chip.controller.external.latency_seconds; });

@@ -168,6 +168,7 @@ struct ExternalMemoryConfig {
   double latency_seconds = 0;
   double bytes_per_second = 0;  ///< 0: there is none
   Bytes burst{0};
+  Bytes size{0};
 };
 
 /// The fabric controller: one core with its own floating-point unit; its memory is L2.

@@ -2,6 +2,8 @@
 // serial work; it shares nothing that this workload contends for.
 #pragma once
 
+#include <vector>
+
 #include "sim/chip/config.h"
 #include "sim/chip/cost.h"
 #include "sim/chip/instruction_cache.h"
@@ -23,7 +25,8 @@ class Controller {
 
   /// Runs the job, which begins at that time. Forks run their shares one after the other; transfers
   /// copy nothing, since the controller works where the data lies, except for those from and to
-  /// external memory.
+  /// external memory: the controller is busy for their latency; their data pass one after the
+  /// other, in the background while it works on.
   JobTiming time(const work::Job& job, Time begin) const;
   /// co_await: the same from now on, until it is done.
   Task<JobTiming> run(const work::Job& job);
@@ -34,9 +37,17 @@ class Controller {
   const ClockDomain& clock() const { return clock_; }
 
  private:
+  /// What is under way within a job, in cycles since its begin.
+  struct ExternalTransfers {
+    double now = 0;
+    double free = 0;           ///< from when on the next data may pass
+    std::vector<double> done;  ///< by number of the background transfer
+  };
+
   Demand demand_of_stage(const work::StageRun& stage, OperationAccounts* by_operation) const;
-  void book(StageTiming& stage, const work::StageRun& run) const;
-  double transfer_cycles(const work::StageRun& stage) const;
+  void book(StageTiming& stage, const work::StageRun& run, ExternalTransfers& transfers) const;
+  double wait_for_transfers(const work::StageRun& stage, double work,
+                            ExternalTransfers& transfers) const;
 
   Kernel& kernel_;
   const ClockDomain& clock_;

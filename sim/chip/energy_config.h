@@ -59,6 +59,12 @@ struct EnergyConfig {
     Joules access;  ///< of up to 32 bits
   } l2;
 
+  /// Memory outside of the chip, whose supply is its own: neither scales with the chip's voltage.
+  struct External {
+    Joules byte;         ///< of a byte that is moved, with the pins of both ends
+    Watts static_power;  ///< refresh and standby, where the workload keeps something there
+  } external;
+
   /// The rest of the chip: controller besides its core, interconnect, L2 besides accesses,
   /// regulator.
   struct Soc {

@@ -33,7 +33,8 @@ bool same_cluster(const ClusterConfig& a, const ClusterConfig& b) {
 
 bool same_controller(const ControllerConfig& a, const ControllerConfig& b, bool moves_external) {
   const auto& [clock, core, icache, external, shares_core, accelerators] = a;
-  const auto& [latency_seconds, bytes_per_second, burst] = external;
+  const auto& [latency_seconds, bytes_per_second, burst, size] = external;
+  static_cast<void>(size);  // compared with what the work needs
   const bool same_external = latency_seconds == b.external.latency_seconds &&
                              bytes_per_second == b.external.bytes_per_second &&
                              burst == b.external.burst && (clock == b.clock || !moves_external);

@@ -72,6 +72,8 @@ Activity& Activity::operator+=(const Activity& o) {
   cores_gated += o.cores_gated;
   controller_working += o.controller_working;
   time += o.time;
+  external_bytes += o.external_bytes;
+  external_on += o.external_on;
   return *this;
 }
 
@@ -118,6 +120,7 @@ Activity controller_activity(const ChipConfig& chip, const work::Counts& counts,
   a.controller_f32_operations = f32_operations(demand);
   a.l2_accesses = local_accesses(demand) + l2_accesses(counts, demand, chip.controller.icache) +
                   static_cast<double>(transfers.external.count()) / kWord;
+  a.external_bytes = static_cast<double>(transfers.external.count());
   for (const work::OffloadWork& calls : served) {
     a.controller_instructions += service_of(calls, chip.controller.accelerators).instructions;
     a.controller_items[work::index(calls.kernel)] += static_cast<double>(calls.items);

@@ -38,7 +38,9 @@ struct Activity {
   Seconds cores_working;  ///< summed over the cluster's cores
   Seconds cores_gated;
   Seconds controller_working;
-  Seconds time;  ///< that the whole chip was on
+  Seconds time;               ///< that the whole chip was on
+  double external_bytes = 0;  ///< from and to external memory
+  Seconds external_on;        ///< while it keeps something
 
   Activity& operator+=(const Activity& o);
 };

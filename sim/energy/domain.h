@@ -1,4 +1,5 @@
-// The parts of a chip by which energy is reported. Together they are the chip.
+// The parts of a chip by which energy is reported. Together they are the chip, with its external
+// memory if the workload keeps something there.
 #pragma once
 
 #include <array>
@@ -8,7 +9,7 @@
 
 namespace leviosim::sim {
 
-enum class Domain : std::uint8_t { Cores, Fpu, L1, Dma, Cluster, Controller, L2, Soc };
+enum class Domain : std::uint8_t { Cores, Fpu, L1, Dma, Cluster, Controller, L2, Soc, External };
 
 struct DomainInfo {
   Domain domain;
@@ -18,13 +19,15 @@ struct DomainInfo {
 
 inline constexpr std::array kDomains{
     DomainInfo{Domain::Cores, "cores", "instructions and leakage of the cluster's cores"},
-    DomainInfo{Domain::Fpu, "fpu", "operations, clock and leakage of the cluster's floating-point units"},
+    DomainInfo{Domain::Fpu, "fpu",
+               "operations, clock and leakage of the cluster's floating-point units"},
     DomainInfo{Domain::L1, "l1", "accesses, clock and leakage of L1 with its network"},
     DomainInfo{Domain::Dma, "dma", "transfers, clock and leakage of the cluster's DMA"},
     DomainInfo{Domain::Cluster, "cluster", "clock, interconnect and leakage of the cluster"},
     DomainInfo{Domain::Controller, "controller", "fabric controller with its floating-point unit"},
     DomainInfo{Domain::L2, "l2", "accesses, clock and leakage of L2"},
     DomainInfo{Domain::Soc, "soc", "clock of the rest of the chip, leakage, regulator"},
+    DomainInfo{Domain::External, "external", "transfers, refresh and standby of external memory"},
 };
 
 inline constexpr std::size_t kDomainCount = kDomains.size();

@@ -53,6 +53,8 @@ class Model {
         flow(c.core.leakage - c.core.gated_leakage, a.controller_working);
     e[index(Domain::L2)] = events(a.l2_accesses, c.l2.access);
     e[index(Domain::Soc)] += events(a.soc_cycles, c.soc.cycle) + flow(c.soc.static_power, a.time);
+    e[index(Domain::External)] =
+        c.external.byte * a.external_bytes + c.external.static_power * a.external_on;
     return e;
   }
 
@@ -104,6 +106,11 @@ Estimate<Joules> DomainEnergies::total() const {
   Estimate<Joules> sum;
   for (const Estimate<Joules>& energy : energies_) sum += energy;
   return sum;
+}
+
+std::span<const DomainInfo> domains_of(const DomainEnergies& energies) {
+  const bool outside = energies[Domain::External].high() > Joules(0);
+  return std::span(kDomains).first(kDomainCount - (outside ? 0 : 1));
 }
 
 DomainEnergies& DomainEnergies::operator+=(const DomainEnergies& o) {

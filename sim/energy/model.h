@@ -13,10 +13,11 @@
 //
 // Leaves out: the data that an instruction works on and which instruction it is; that leakage grows
 // with temperature; sleep states, power switches; losses of the regulator that are
-// proportional to its load; external memory, sensors and pads.
+// proportional to its load; sensors and pads, and external memory that keeps nothing.
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "sim/chip/config.h"
 #include "sim/energy/activity.h"
@@ -36,6 +37,9 @@ class DomainEnergies {
  private:
   std::array<Estimate<Joules>, kDomainCount> energies_{};
 };
+
+/// Those that take part: all but external memory where nothing lies there.
+std::span<const DomainInfo> domains_of(const DomainEnergies& energies);
 
 /// Whether the platform has energy figures.
 bool knows_energy(const ChipConfig& chip);

@@ -67,6 +67,9 @@ inline constexpr std::array kUncertaintySources{
                         to.cluster_accelerators = from.cluster_accelerators;
                         to.controller_accelerators = from.controller_accelerators;
                       }},
+    UncertaintySource{
+        "energy of external memory",
+        [](const EnergyConfig& from, EnergyConfig& to) { to.external = from.external; }},
 };
 
 inline constexpr std::size_t kUncertaintySourceCount = kUncertaintySources.size();

@@ -21,8 +21,6 @@ Arena::Arena(std::string_view name, Bytes capacity, int alignment)
     : name_(name),
       capacity_(capacity),
       alignment_(alignment),
-      owned_(new std::byte[static_cast<std::size_t>(host_capacity_for(capacity).count())]),
-      storage_(owned_.get()),
       host_capacity_(host_capacity_for(capacity)) {}
 
 Arena::Arena(const Arena& lender, std::string_view name, Bytes offset, Bytes capacity,
@@ -50,12 +48,13 @@ Bytes Arena::place(std::string_view name, Bytes size) {
 
 MemoryOverflow Arena::overflow(std::string_view block, Bytes size) const {
   const Bytes begin(round_up((base_ + used_).count(), alignment_));
+  const Bytes missing = begin - base_ + size - capacity_;
   return MemoryOverflow(
       fmt::format("{}: block '{}' of {} bytes does not fit in {}: {} of {} bytes are in use, {} "
                   "bytes are missing",
                   user_.empty() ? "set-up" : user_, block, size.count(), name_, used_.count(),
-                  capacity_.count(), (begin - base_ + size - capacity_).count()),
-      std::string(name_));
+                  capacity_.count(), missing.count()),
+      std::string(name_), missing);
 }
 
 std::byte* Arena::host(Bytes size) {
@@ -63,7 +62,15 @@ std::byte* Arena::host(Bytes size) {
   host_used_ += Bytes(round_up(size.count(), kHostAlignment));
   check(host_used_ <= host_capacity_,
         "an arena's host storage is exhausted before its modelled memory");
-  return storage_ + begin.count();
+  return storage() + begin.count();
+}
+
+std::byte* Arena::storage() {
+  if (storage_ == nullptr) {
+    owned_.reset(new std::byte[static_cast<std::size_t>(host_capacity_.count())]);
+    storage_ = owned_.get();
+  }
+  return storage_;
 }
 
 void Arena::reset_peak() {
@@ -72,6 +79,7 @@ void Arena::reset_peak() {
 }
 
 Arena Arena::lend(std::string_view name, int n, int k) {
+  storage();
   const Bytes each(free().count() / n / alignment_ * alignment_);
   const Bytes host_each((host_capacity_ - host_used_).count() / n / kHostAlignment *
                         kHostAlignment);

@@ -91,6 +91,7 @@ class Arena {
         Bytes host_capacity);
   Bytes place(std::string_view name, Bytes size);
   std::byte* host(Bytes size);
+  std::byte* storage();
 
   std::string_view name_;
   std::string_view user_;
@@ -102,7 +103,7 @@ class Arena {
   std::vector<Block> live_;
   std::vector<Block> at_peak_;
   std::unique_ptr<std::byte[]> owned_;
-  std::byte* storage_;
+  std::byte* storage_ = nullptr;  ///< made when something is allocated
   Bytes host_capacity_{0};
   Bytes host_used_{0};
 };
@@ -112,12 +113,15 @@ class Arena {
 class MemoryOverflow : public InputError {
  public:
   /// @param memory  that is too small: "L1", "L2", or "scratch", a core's part of L1
-  MemoryOverflow(const std::string& what, std::string memory)
-      : InputError(what), memory_(std::move(memory)) {}
+  MemoryOverflow(const std::string& what, std::string memory, Bytes missing = Bytes(0))
+      : InputError(what), memory_(std::move(memory)), missing_(missing) {}
   const std::string& memory() const { return memory_; }
+  /// Of the memory; 0 if that was not said.
+  Bytes missing() const { return missing_; }
 
  private:
   std::string memory_;
+  Bytes missing_;
 };
 
 }  // namespace leviosim::work

@@ -5,7 +5,9 @@
 namespace leviosim::work {
 
 Machine::Machine(const MachineConfig& config)
-    : config_(config), local_(config.memory, config.capacity, config.alignment) {
+    : config_(config),
+      local_(config.memory, config.capacity, config.alignment),
+      external_("external memory", config.external) {
   check(config.cores >= 1, "a machine has at least one core");
   if (config.record && config.code != nullptr) tracker_.emplace(*config.code, config.cores + 1);
 }
@@ -27,6 +29,7 @@ void Machine::begin_stage(std::string_view name) {
   in_stage_ = true;
   stage_ = name;
   local_.set_user(name);
+  external_.set_user(name);
   local_.reset_peak();
   fork_peak_ = {};
   if (!recording()) return;
@@ -88,7 +91,7 @@ int Machine::workers_with(Bytes scratch) const {
       std::clamp<std::int64_t>(local_.free().count() / each.count(), 1, config_.cores));
 }
 
-void Machine::note_tile(std::string_view block, Bytes bytes) {
+void Machine::note_tile(std::string_view block, Bytes bytes, Bytes more) {
   const auto known = std::find_if(passages_.begin(), passages_.end(), [&](const Passage& p) {
     return p.stage == stage_ && p.block == block;
   });
@@ -96,6 +99,7 @@ void Machine::note_tile(std::string_view block, Bytes bytes) {
       known != passages_.end() ? *known : passages_.emplace_back(Passage{stage_, block});
   ++passage.tiles;
   passage.bytes += bytes;
+  passage.more += more;
 }
 
 void Machine::note_transfer(const Transfer& transfer) {

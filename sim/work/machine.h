@@ -57,6 +57,7 @@ struct MachineConfig {
   bool record = false;             ///< keep a Job of what was done
   bool offload = true;             ///< … and in it what offload regions did, for accelerators
   const CodeMap* code = nullptr;   ///< sizes of the workload's compiled code; outlives the machine
+  Bytes external{0};  ///< what lies behind L2, where that is the local memory; 0: nothing does
 };
 
 class Machine {
@@ -67,6 +68,9 @@ class Machine {
   bool recording() const { return config_.record; }
   Arena& local() { return local_; }
   const Arena& local() const { return local_; }
+  /// What has no room in L2, if that is the local memory. Its capacity is 0 on a chip without.
+  Arena& external() { return external_; }
+  const Arena& external() const { return external_; }
 
   /// While alive, work belongs to the stage of this name (a string literal). Stages do not nest.
   class Stage {
@@ -113,14 +117,15 @@ class Machine {
     end_fork();
   }
 
-  /// DMA from L2 into local memory, and back. The host copies at once.
+  /// DMA from the memory behind into local memory, and back: from L2, or from external memory where
+  /// L2 is the local one and there is any. The host copies at once.
   template <class To, class From>
   void copy_in(To to, From from) {
-    copy(Direction::L2ToL1, to, from, false);
+    copy(inwards(), to, from, false);
   }
   template <class To, class From>
   void copy_out(To to, From from) {
-    copy(Direction::L1ToL2, to, from, false);
+    copy(outwards(), to, from, false);
   }
 
   /// DMA in the background. The host copies at once; on the chip the data are there after wait(),
@@ -136,27 +141,22 @@ class Machine {
   };
   template <class To, class From>
   [[nodiscard]] Ticket start_copy_in(To to, From from) {
-    copy(Direction::L2ToL1, to, from, true);
+    copy(inwards(), to, from, true);
     return Ticket(background_transfers_++);
   }
   template <class To, class From>
   [[nodiscard]] Ticket start_copy_out(To to, From from) {
-    copy(Direction::L1ToL2, to, from, true);
+    copy(outwards(), to, from, true);
     return Ticket(background_transfers_++);
   }
   void wait(Ticket ticket);
-
-  /// Between L2 and external memory; only a controller's machine can do it.
-  template <class To, class From>
-  void load_external(To to, From from) {
-    copy(Direction::ExternalToL2, to, from, false);
-  }
 
   /// What was recorded since the last call.
   Job take_job();
 
   /// Counts a tile of a block that passes through the local memory (tiles.h).
-  void note_tile(std::string_view block, Bytes bytes);
+  /// @param more  of the bytes, what would not have moved if the block stayed in local memory
+  void note_tile(std::string_view block, Bytes bytes, Bytes more);
   /// What has passed so far, in the order of its first tiles.
   const std::vector<Passage>& passages() const { return passages_; }
 
@@ -167,6 +167,13 @@ class Machine {
   }
 
  private:
+  bool behind_is_external() const { return config_.external > Bytes(0); }
+  Direction inwards() const {
+    return behind_is_external() ? Direction::ExternalToL2 : Direction::L2ToL1;
+  }
+  Direction outwards() const {
+    return behind_is_external() ? Direction::L2ToExternal : Direction::L1ToL2;
+  }
   template <class To, class From>
   void copy(Direction direction, To to, From from, bool background) {
     const auto n = static_cast<std::size_t>(std::min(to.size(), from.size()));
@@ -206,6 +213,7 @@ class Machine {
 
   MachineConfig config_;
   Arena local_;
+  Arena external_;
   Job job_;
   bool in_stage_ = false;
   std::int32_t background_transfers_ = 0;  ///< of the job so far

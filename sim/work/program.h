@@ -69,6 +69,7 @@ struct Passage {
   std::string_view stage, block;
   std::int64_t tiles = 0;
   Bytes bytes{0};
+  Bytes more{0};  ///< of these, what would not have moved if the block stayed in local memory
 };
 
 /// Highest occupation of a memory during a stage.

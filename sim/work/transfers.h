@@ -12,11 +12,15 @@ struct Transferred {
   std::int64_t transfers = 0;  ///< between L1 and L2
   Bytes bytes;                 ///< of these, both directions
   Bytes external;              ///< between L2 and external memory
+  std::int64_t tiles = 0;      ///< of all these, in the background: what passes in tiles
+  Bytes tile_bytes{0};
 
   Transferred& operator+=(const Transferred& o) {
     transfers += o.transfers;
     bytes += o.bytes;
     external += o.external;
+    tiles += o.tiles;
+    tile_bytes += o.tile_bytes;
     return *this;
   }
 };
@@ -27,10 +31,14 @@ inline Transferred transferred_by(const StageRun& stage) {
   for (const Step& step : stage.steps) {
     const auto* transfer = std::get_if<Transfer>(&step);
     if (transfer == nullptr) continue;
+    if (transfer->background) {
+      ++sum.tiles;
+      sum.tile_bytes += transfer->bytes;
+    }
     if (is_between_l1_and_l2(transfer->direction))
-      sum += {1, transfer->bytes, Bytes(0)};
+      sum += {1, transfer->bytes, Bytes(0), 0, Bytes(0)};
     else
-      sum += {0, Bytes(0), transfer->bytes};
+      sum += {0, Bytes(0), transfer->bytes, 0, Bytes(0)};
   }
   return sum;
 }

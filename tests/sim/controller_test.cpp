@@ -36,6 +36,25 @@ TEST(Controller, ATransferFromExternalMemoryTakesABurstAtLeast) {
   EXPECT_EQ(cycles_of({external(644), external(644)}), Cycles(200 + 129));
 }
 
+work::Transfer in_background(work::Direction direction, std::int64_t bytes) {
+  return {direction, Bytes(bytes), true};
+}
+work::Serial work_of(std::uint64_t cycles) { return {{alu(cycles), {}}}; }
+
+TEST(Controller, DataPassWhileItWorksAndLatencyKeepsItBusy) {
+  using enum work::Direction;
+  const work::Transfer in = in_background(ExternalToL2, 10'000);  // 100 cycles and 1000
+  // As long as the work is longer, only the latency shows; else what is left of the data.
+  EXPECT_EQ(cycles_of({in, work_of(1500), work::TransferWait{0}}), Cycles(100 + 1500));
+  EXPECT_EQ(cycles_of({in, work_of(400), work::TransferWait{0}}), Cycles(100 + 1000));
+  // Data pass one after the other, those that nobody waits for yet, too.
+  const work::Transfer out = in_background(L2ToExternal, 10'000);
+  EXPECT_EQ(cycles_of({in, out, work::TransferWait{0}, work::TransferWait{1}}),
+            Cycles(100 + 1000 + 1000));
+  EXPECT_EQ(cycles_of({in, out, work::TransferWait{0}, work_of(2000), work::TransferWait{1}}),
+            Cycles(100 + 1000 + 2000));
+}
+
 TEST(Controller, TransfersInsideTheChipAreNotFar) {
   EXPECT_EQ(cycles_of({work::Transfer{work::Direction::L2ToL1, Bytes(10'000)}}), Cycles(0));
 }

@@ -64,11 +64,27 @@ TEST(Energy, OneCoreThatIssuesInstructions) {
 TEST(Energy, DomainsAreTheTotal) {
   const DomainEnergies e = mixed_stage(energy_chip());
   double sum = 0;
-  for (const DomainInfo& info : kDomains) {
+  EXPECT_EQ(domains_of(e).size(), kDomainCount - 1);  // nothing lies in external memory
+  for (const DomainInfo& info : domains_of(e)) {
     EXPECT_GT(joules(e, info.domain), 0) << info.name;
     sum += joules(e, info.domain);
   }
   EXPECT_DOUBLE_EQ(e.total().value.count(), sum);
+}
+
+// Of its bytes, and of the time for which it keeps something, whatever the chip's voltage.
+TEST(Energy, ExternalMemoryTakesPartWhereSomethingLiesThere) {
+  ChipConfig chip = energy_chip();
+  chip.energy.value.external = {Joules(1e-9), Watts(0.25)};
+  chip.energy.low.external = chip.energy.high.external = chip.energy.value.external;
+  const work::Transferred moved{0, Bytes(0), Bytes(5000)};
+  Activity activity = controller_activity(chip, {}, moved, Cycles(0));
+  activity.external_on = Seconds(2);
+  chip.supply.voltage = chip.energy.value.voltage * 0.5;
+  const DomainEnergies e = energy_of(activity, chip);
+  EXPECT_DOUBLE_EQ(joules(e, Domain::External), 5000 * 1e-9 + 2 * 0.25);
+  EXPECT_EQ(domains_of(e).size(), kDomainCount);
+  EXPECT_EQ(domains_of(e).back().name, "external");
 }
 
 TEST(Energy, FloatingPointUnitsAddToTheInstruction) {

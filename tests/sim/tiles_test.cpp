@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "sim/chip/chip.h"
+#include "sim/work/transfers.h"
 #include "tests/sim/chip_test_config.h"
 
 namespace leviosim::work {
@@ -107,6 +108,80 @@ TEST(Tiles, GoThereAndBackAndEveryItemOnce) {
     EXPECT_EQ(passed.passages[0].bytes, Bytes(400));
     EXPECT_EQ(passed.passages[1].block, "out");
   }
+}
+
+/// `n` words come in tiles of 10, and of every third tile nothing goes back.
+Job keep_two_thirds(int n, int buffers) {
+  Machine machine({.cores = 1, .capacity = Bytes(64 * 1024), .record = true});
+  std::vector<P::U32> words(static_cast<std::size_t>(n)), kept(words.size());
+  std::iota(words.begin(), words.end(), 0u);
+  int total = 0;
+  {
+    const auto stage = machine.stage("s");
+    const Arena::Frame frame(machine.local());
+    TilesOut<P, P::U32> out(machine, "out", 10, false, buffers);
+    for_each_tile<P>(
+        machine, TilePlan(0, n, 10, 0, n, buffers),
+        [&](int i, const Tile& tile, Words in) {
+          const Words to = out.next(machine);
+          if (i % 3 == 2) return;
+          for (int k : P::range(0, tile.size())) to[k] = P::U32(in[k]);
+          out.send(machine, Words(kept.data() + total, tile.size()));
+          total += tile.size();
+        },
+        PassingBlock<P, P::U32>{"in", Words(words.data(), n)});
+    out.finish(machine);
+  }
+  for (int i = 0, at = 0; i < n; ++i) {
+    if (i / 10 % 3 == 2) continue;
+    EXPECT_EQ(value(kept[static_cast<std::size_t>(at++)]), static_cast<std::uint32_t>(i));
+  }
+  return machine.take_job();  // which checks that every transfer has been waited for once
+}
+
+TEST(Tiles, OfWhichSomeAreNotSentAreWaitedForOnce) {
+  for (const int n : {1, 20, 21, 100, 205}) keep_two_thirds(n, 2);
+}
+
+TEST(Tiles, PassOneAtATimeThroughOneBuffer) {
+  for (const int n : {1, 20, 100}) {
+    const Job two = keep_two_thirds(n, 2), one = keep_two_thirds(n, 1);
+    EXPECT_EQ(transferred_by(one.stages[0]).tile_bytes, transferred_by(two.stages[0]).tile_bytes);
+    EXPECT_EQ(one.stages[0].memory.single * 2, two.stages[0].memory.single);
+  }
+}
+
+TEST(Tiles, TellWhatAProgramWithRoomWouldNotHaveMoved) {
+  Machine machine({.cores = 1, .capacity = Bytes(64 * 1024), .record = true});
+  std::vector<P::U32> words(100);
+  const auto stage = machine.stage("s");
+  const Words all(words.data(), 100);
+  const auto nothing = [](int, const Tile&, Words) {};
+  for_each_tile<P>(machine, TilePlan(10, 90, 20, 3, 100), nothing,
+                   PassingBlock<P, P::U32>{"once", all});
+  for_each_tile<P>(machine, TilePlan(0, 100, 20, 0, 100), nothing,
+                   PassingBlock<P, P::U32>{"again", all, 1, true});
+  ASSERT_EQ(machine.passages().size(), 2u);
+  EXPECT_EQ(machine.passages()[0].bytes, Bytes(4 * (80 + 4 * 6)));
+  EXPECT_EQ(machine.passages()[0].more, Bytes(4 * 4 * 6));  // the reach of four tiles
+  EXPECT_EQ(machine.passages()[1].more, Bytes(400));
+}
+
+TEST(Tiles, OfAMemoryBeforeExternalMemoryComeFromThere) {
+  Machine machine({.cores = 1, .memory = "L2", .record = true, .external = Bytes(4096)});
+  const Words behind = machine.external().alloc<Words>("block", 100);
+  {
+    const auto stage = machine.stage("s");
+    for_each_tile<P>(
+        machine, TilePlan(0, 100, 20, 0, 100), [](int, const Tile&, Words) {},
+        PassingBlock<P, P::U32>{"block", behind});
+  }
+  const Job job = machine.take_job();
+  const Transferred moved = transferred_by(job.stages[0]);
+  EXPECT_EQ(moved.external, Bytes(400));
+  EXPECT_EQ(moved.bytes, Bytes(0));
+  EXPECT_EQ(moved.tiles, 5);
+  EXPECT_EQ(machine.external().peak(), Bytes(400));
 }
 
 /// Cycles of the stage on a chip whose DMA moves so many bytes in a cycle.

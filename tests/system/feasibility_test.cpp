@@ -90,6 +90,30 @@ TEST_F(Feasible, NamesTheBlockThatDoesNotFitAndGivesTheTimeAllTheSame) {
   EXPECT_EQ(feasibility_table({on("gap9", 8)}).find("if it had the memory"), std::string::npos);
 }
 
+/// In tiles through L1, and with the optimiser's records in external memory: the work is another
+/// one.
+TEST_F(Feasible, SmallMemoriesGetWorkOfTheirOwn) {
+  const Feasibility gap8 = on("gap8", 8);
+  EXPECT_TRUE(gap8.fits()) << memory_verdict(gap8);
+  EXPECT_TRUE(gap8.in_tiles);
+  EXPECT_GT(gap8.external, Bytes(300'000));
+  EXPECT_NE(memory_verdict(gap8).find("in tiles through L1"), std::string::npos);
+  EXPECT_NE(memory_verdict(gap8).find(" kB in external memory"), std::string::npos);
+  const Feasibility m7 = on("cortex-m7", 1);
+  EXPECT_TRUE(m7.fits()) << memory_verdict(m7);
+  EXPECT_FALSE(m7.in_tiles);
+  EXPECT_LE(m7.l2.occupied, m7.l2.size);
+  // What it costs: time of transfers, energy of external memory.
+  const Feasibility roomy = on("cortex-m7", 1, {"l2.size=2MiB"});
+  EXPECT_EQ(roomy.external, Bytes(0));
+  EXPECT_GE(m7.optimiser_ms, roomy.optimiser_ms);
+  EXPECT_GT(m7.energy_per_frame->value, roomy.energy_per_frame->value);
+  // Without external memory the shortage is the verdict, of L2 alone.
+  const Feasibility m4 = on("cortex-m4f", 1);
+  EXPECT_TRUE(m4.l1.fits());
+  EXPECT_FALSE(m4.l2.fits());
+}
+
 /// The paper: "roughly 300 ms per iteration at 370 MHz" on one core.
 TEST_F(Feasible, PublishedTimesStandBesideTheirChips) {
   EXPECT_NE(feasibility_table({on("gap9", 1)}).find("≈ 300"), std::string::npos);
@@ -113,7 +137,7 @@ TEST_F(Feasible, StagesRefuseChipsOnWhichARunIsRefused) {
     return testing::run_program(log.path(), words);
   };
   testing::expect_refused(stages({"gap9", "cortex-m4f"}),
-                          {"cortex-m4f: ", " kB short of L1 at '", "platforms feasibility"});
+                          {"cortex-m4f: ", " kB short of L2 at '", "platforms feasibility"});
   const testing::ProgramResult all = stages({"--jobs", "1"});
   EXPECT_EQ(all.status, 0) << all.err;
   EXPECT_NE(all.out.find("left out: cortex-m4f: "), std::string::npos) << all.out;

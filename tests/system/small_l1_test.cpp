@@ -1,5 +1,5 @@
-// An L1 that cannot hold what the stages work on: the same poses, to the bit, from what passes
-// through it in tiles.
+// An L1 that cannot hold what the stages work on, and an L2 that cannot hold the optimiser's
+// records: the same poses, to the bit, from what passes through them in tiles.
 #include <gtest/gtest.h>
 
 #include <ostream>
@@ -71,6 +71,44 @@ TEST(SmallL1, PassesInTilesWhatHasNoRoom) {
 TEST(SmallL1, EpnpKeepsAllItsCores) {
   EXPECT_TRUE(passing("levio", 56).contains("frame matching: tile of descriptors"));
   EXPECT_FALSE(passing("next", 56).contains("frame matching: tile of descriptors"));
+}
+
+/// A chip with external memory keeps there what L2 has no room for.
+TEST(SmallL2, HasTheSamePosesFromRecordsInExternalMemory) {
+  for (const char* name : {"levio", "next"}) {
+    const Profile profile = profile_named(name, 1);
+    const Flown large = fly(flight_of(160), profile);
+    // Room for some 200 records, for 20, and for hardly any.
+    for (const int l2_kib : {450, 370, 330}) {
+      if (name == std::string("levio") && l2_kib == 330) continue;  // all of them have room
+      const Bytes l2(1024LL * (name == std::string("levio") ? l2_kib - 150 : l2_kib));
+      const Flown small = fly(flight_of(160), profile, 8, Bytes(1 << 24), l2, Bytes(1 << 22));
+      for (std::size_t i = 0; i < large.trajectory.size(); ++i)
+        ASSERT_TRUE(small.trajectory[i].T_world_body.matrix() ==
+                    large.trajectory[i].T_world_body.matrix())
+            << name << ", " << l2_kib << " KiB, frame " << i;
+      EXPECT_FALSE(small.l2_passages.empty()) << name << ", " << l2_kib << " KiB";
+    }
+    EXPECT_TRUE(large.l2_passages.empty());
+  }
+}
+
+/// Twice as large an image, with as many features.
+TEST(SmallL1, HasTheSamePosesOfLargerImages) {
+  static const ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1)), 3, 320, 240);
+  for (const char* name : {"levio", "next"}) {
+    Profile profile = profile_named(name, 1);
+    profile.extractor.cell = 16;
+    profile.extractor.per_cell = name == std::string("levio") ? 4 : 3;
+    const Flown large = fly(flight, profile);
+    for (const auto& [l1_kib, cores] : {std::pair{32, 8}, {48, 4}, {64, 16}, {96, 1}}) {
+      const Flown small = fly(flight, profile, cores, Bytes(1024LL * l1_kib));
+      for (std::size_t i = 0; i < large.trajectory.size(); ++i)
+        ASSERT_TRUE(small.trajectory[i].T_world_body.matrix() ==
+                    large.trajectory[i].T_world_body.matrix())
+            << name << " in " << l1_kib << " KiB, frame " << i;
+    }
+  }
 }
 
 // A stack of memory that what a stage needs at random does not fit into says what is missing.

@@ -104,6 +104,48 @@ TEST(WorkloadOverrides, ReachTheRunAndItsManifest) {
   expect_refused(run("bad", {"-p", "cluster.workers=6"}), {"leave out --set cluster.workers=6"});
 }
 
+TEST(WorkloadOverrides, ABudgetOfL1IsASmallerL1) {
+  const AslFolder data;
+  const TempFolder folder;
+  const auto run = [&](const std::string& out, const std::string& set) {
+    return run_program(folder.path(),
+                       {"run", "--data", data.root().string(), "--size", "96x72", "--platform",
+                        "gap9", "--out", (folder / out).string(), "--quiet", "-p", set});
+  };
+  const auto table = [&](const std::string& file) { return base::read_text_file(folder / file); };
+  for (const auto& [out, set] : {std::pair{"budget", "workload.l1=32KiB"},
+                                 {"size", "cluster.l1.size=32KiB"},
+                                 {"all", "workload.l1=0"}}) {
+    const ProgramResult result = run(out, set);
+    EXPECT_EQ(result.status, 0) << result.err;
+  }
+  EXPECT_EQ(table("budget/stages.csv"), table("size/stages.csv"));
+  EXPECT_NE(table("budget/stages.csv"), table("all/stages.csv"));
+  EXPECT_EQ(table("budget/trajectory.tum"), table("all/trajectory.tum"));
+}
+
+/// An L1 in which nothing works: the least that does is said, and does.
+TEST(WorkloadOverrides, ATooSmallL1IsToldTheLeastThatWorks) {
+  const AslFolder data;
+  const TempFolder folder;
+  const auto run = [&](const std::string& set) {
+    return run_program(folder.path(),
+                       {"run", "--data", data.root().string(), "--size", "96x72", "--platform",
+                        "gap9", "--out", (folder / "out").string(), "--quiet", "-p", set});
+  };
+  const ProgramResult small = run("cluster.l1.size=4KiB");
+  expect_refused(small, {"feature extraction", "is the least that works"});
+  const std::string before = "cluster.l1.size=";
+  const std::size_t at = small.err.find(before, small.err.find("missing")) + before.size();
+  const int least = std::stoi(small.err.substr(at));
+  EXPECT_GT(least, 4);
+  expect_refused(run(before + std::to_string(least - 1) + "KiB"), {"is the least that works"});
+  const ProgramResult fits = run(before + std::to_string(least) + "KiB");
+  EXPECT_EQ(fits.status, 0) << fits.err;
+  expect_refused(run("workload.l1=4KiB"),
+                 {"workload.l1=" + std::to_string(least) + "KiB is the least that works"});
+}
+
 TEST(WorkloadCommand, ListsProfilesAndParameters) {
   const TempFolder folder;
   const ProgramResult result = run_program(folder.path(), {"workload"});

@@ -253,7 +253,8 @@ struct Flown {
   double ate = 0;      ///< SE3-aligned [m]
   bool finite = true;  ///< all poses
   int map_restarts = 0;
-  std::vector<work::Passage> passages;  ///< what passed through L1 in tiles
+  std::vector<work::Passage> passages;     ///< what passed through L1 in tiles
+  std::vector<work::Passage> l2_passages;  ///< … and through L2
   double skew = 0;  ///< how far a rotation is from being one: largest element of RᵀR − I
 
   int count(PoseSource source) const {
@@ -275,9 +276,9 @@ inline Eigen::Isometry3d body_pose(const CameraPose& pose, const Eigen::Isometry
 }
 
 inline Flown fly(const ShortFlight& flight, const Profile& profile, int cores = 8,
-                 Bytes l1 = Bytes(1 << 24)) {
+                 Bytes l1 = Bytes(1 << 24), Bytes l2 = Bytes(1 << 24), Bytes external = Bytes(0)) {
   work::Machine cluster({cores, "L1", l1, 1, false});
-  work::Machine controller({1, "L2", Bytes(1 << 24), 4, false});
+  work::Machine controller({.cores = 1, .memory = "L2", .capacity = l2, .external = external});
   const auto odometry = make_odometry(false, profile, flight.rig, cluster, controller);
   Flown flown;
   std::int64_t before_ns = flight.frames.front().t_ns;
@@ -308,6 +309,7 @@ inline Flown fly(const ShortFlight& flight, const Profile& profile, int cores = 
     flown.map_restarts += report.map_restarts;
   }
   flown.passages = cluster.passages();
+  flown.l2_passages = controller.passages();
   if (flown.finite) flown.ate = traces::evaluate(flown.trajectory, flight.truth).translation.rmse;
   return flown;
 }

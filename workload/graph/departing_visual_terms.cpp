@@ -117,29 +117,32 @@ template void forget_departed(const Window<work::Counting>&, int, bool,
                               const PoseGraph<work::Counting>&);
 
 template <class P>
-void add_departing_visual_terms(const Window<P>& window, const PixelModel<P>& model, int departed,
-                                bool tracked, const LandmarkRecords<P>& records,
-                                const ProjectionScratch<P>& scratch,
+void add_departing_visual_terms(work::Machine& machine, const Window<P>& window,
+                                const PixelModel<P>& model, int departed, bool tracked,
+                                const LandmarkRecords<P>& all, const ProjectionScratch<P>& scratch,
                                 const ReducedSystem<P>& system) {
   using I32 = typename P::I32;
   const typename P::Function function("add_departing_visual_terms");
   typename P::F32 cost = 0.0f;
-  for (int i : P::range(0, window.landmarks)) {
-    if (!departs<P>(window, i, departed, tracked)) continue;
-    const int first = work::value(I32(window.first_observations[i]));
-    const int number = work::value(I32(window.observation_numbers[i]));
-    const I32 valid = linearise_landmark<P>(window, model, i, records, cost);
-    if (valid < I32(2)) continue;
-    const MatrixView<P> rows = gather_landmark<P>(records, i, number, scratch);
-    project_out_landmark<P>(rows);
-    add_projected<P>(window, rows, first, number, system);
-  }
+  const auto add = [&](const LandmarkRecords<P>& records, int begin, int end) {
+    for (int i : P::range(begin, end)) {
+      if (!departs<P>(window, i, departed, tracked)) continue;
+      const int first = work::value(I32(window.first_observations[i]));
+      const int number = work::value(I32(window.observation_numbers[i]));
+      const I32 valid = linearise_landmark<P>(window, model, i, records, cost);
+      if (valid < I32(2)) continue;
+      const MatrixView<P> rows = gather_landmark<P>(records, i, number, scratch);
+      project_out_landmark<P>(rows);
+      add_projected<P>(window, rows, first, number, system);
+    }
+  };
+  all.fill(machine, window.landmarks, 0, add);
 }
 
 #define LEVIOSIM_INSTANTIATE(P)                                                                    \
-  template void add_departing_visual_terms(const Window<P>&, const PixelModel<P>&, int, bool,      \
-                                           const LandmarkRecords<P>&, const ProjectionScratch<P>&, \
-                                           const ReducedSystem<P>&);
+  template void add_departing_visual_terms(work::Machine&, const Window<P>&, const PixelModel<P>&, \
+                                           int, bool, const LandmarkRecords<P>&,                   \
+                                           const ProjectionScratch<P>&, const ReducedSystem<P>&);
 LEVIOSIM_INSTANTIATE(work::Native)
 LEVIOSIM_INSTANTIATE(work::Counting)
 #undef LEVIOSIM_INSTANTIATE

@@ -39,8 +39,9 @@ void forget_departed(const Window<P>& window, int departed, bool tracked,
 /// Adds, without damping and at `window.state`, the landmarks that the `departed` oldest keyframes
 /// saw; of those that the newest keyframe sees as well only if `tracked`.
 template <class P>
-void add_departing_visual_terms(const Window<P>& window, const PixelModel<P>& model, int departed,
-                                bool tracked, const LandmarkRecords<P>& records,
+void add_departing_visual_terms(work::Machine& machine, const Window<P>& window,
+                                const PixelModel<P>& model, int departed, bool tracked,
+                                const LandmarkRecords<P>& records,
                                 const ProjectionScratch<P>& scratch,
                                 const ReducedSystem<P>& system);
 

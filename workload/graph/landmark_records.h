@@ -8,9 +8,24 @@
 //   at the end the inverse of the landmark's block of the normal equations (6, symmetric) and its
 //              right-hand side (3): 36 bytes
 // For 8 keyframes and 1000 landmarks 676 kB.
+//
+// They are walked twice an iteration: filled, and read for the landmarks' steps. Those that local
+// memory has no room for lie in the memory behind it and pass in tiles (sim/work/tiles.h).
 #pragma once
 
+#include <algorithm>
+
+#include "sim/work/tiles.h"
+
 namespace leviosim::vio {
+
+/// What memory of an arena is left beside what make() allocates.
+template <class Make>
+Bytes room_beside(work::Arena& arena, const Make& make) {
+  const work::Arena::Frame frame(arena);
+  [[maybe_unused]] const auto made = make();
+  return arena.free();
+}
 
 template <class P>
 class LandmarkRecords {
@@ -29,21 +44,69 @@ class LandmarkRecords {
   static constexpr int kOwnFloats = 9;
 
   LandmarkRecords(work::Arena& arena, int landmarks, int keyframes)
-      : floats_(keyframes * kSlotFloats + kOwnFloats),
+      : floats_(floats_of(keyframes)),
         keyframes_(keyframes),
-        memory_(arena.alloc<Span>("landmark Jacobian records", landmarks * floats_)) {}
+        resident_(landmarks),
+        memory_(arena.alloc<Span>(kName, landmarks * floats_)) {}
+
+  /// Of which some may lie behind the machine's local memory.
+  /// @param room  that local memory has for them
+  LandmarkRecords(work::Machine& machine, int landmarks, int keyframes, Bytes room)
+      : floats_(floats_of(keyframes)), keyframes_(keyframes) {
+    const Bytes each(static_cast<std::int64_t>(sizeof(float)) * floats_);
+    const auto fitting =
+        static_cast<int>(std::min<std::int64_t>(room.count() / each.count(), landmarks));
+    resident_ = landmarks;
+    if (fitting < landmarks && machine.external().capacity() > Bytes(0)) {
+      tile_ = std::max(1, fitting / kTilesInRoom);
+      resident_ = std::max(0, fitting - 2 * tile_);
+      behind_ = machine.external().alloc<Span>(kName, (landmarks - resident_) * floats_);
+    }
+    memory_ = machine.local().alloc<Span>(kName, resident_ * floats_);
+  }
+
+  /// Calls use(records, begin, end) for all of the `n` records, a run of them at a time, which are
+  /// there to be filled.
+  /// @param kept  so many of them are read afterwards
+  template <class Use>
+  void fill(work::Machine& machine, int n, int kept, const Use& use) const {
+    use(*this, 0, std::min(n, resident_));
+    if (n <= resident_) return;
+    const work::Arena::Frame memory(machine.local());
+    work::TilesOut<P, F> out(machine, kTileName, tile_ * floats_, true);
+    const work::TilePlan plan(resident_, n, tile_, 0, n);
+    for (int i : P::range(0, plan.count())) {
+      const work::Tile tile = plan[i];
+      use(at(tile, out.next(machine)), tile.begin, tile.end);
+      const int last = std::min(tile.end, kept);
+      if (last > tile.begin)
+        out.send(machine, behind_.subspan((tile.begin - resident_) * floats_,
+                                          (last - tile.begin) * floats_));
+    }
+    out.finish(machine);
+  }
+
+  /// The same of records that have been filled.
+  template <class Use>
+  void read(work::Machine& machine, int n, const Use& use) const {
+    use(*this, 0, std::min(n, resident_));
+    const work::TilePlan plan(0, std::max(0, n - resident_), std::max(1, tile_), 0, n - resident_);
+    work::for_each_tile<P>(
+        machine, plan,
+        [&](int, const work::Tile& t, Span records) {
+          const work::Tile tile{t.begin + resident_, t.end + resident_, 0, 0};
+          use(at(tile, records), tile.begin, tile.end);
+        },
+        work::PassingBlock<P, F>{kTileName, behind_, floats_, true});
+  }
 
   /// Floats of a record.
-  int floats() const { return floats_; }
-  Span record(int i) const { return memory_.subspan(i * floats_, floats_); }
+  static int floats_of(int keyframes) { return keyframes * kSlotFloats + kOwnFloats; }
+  Span record(int i) const { return memory_.subspan(place(i), floats_); }
   /// Slot of the j-th observation of landmark i.
-  Span slot(int i, int j) const {
-    return memory_.subspan(i * floats_ + j * kSlotFloats, kSlotFloats);
-  }
+  Span slot(int i, int j) const { return memory_.subspan(place(i) + j * kSlotFloats, kSlotFloats); }
   /// Landmark i's own block.
-  Span own(int i) const {
-    return memory_.subspan(i * floats_ + keyframes_ * kSlotFloats, kOwnFloats);
-  }
+  Span own(int i) const { return memory_.subspan(place(i) + keyframes_ * kSlotFloats, kOwnFloats); }
 
   void store_inverse(int i, const Mat3<P>& inverse) const {
     const Span to = own(i);
@@ -58,9 +121,27 @@ class LandmarkRecords {
   }
 
  private:
+  static constexpr std::string_view kName = "landmark Jacobian records";
+  static constexpr std::string_view kTileName = "tile of landmark Jacobian records";
+  /// Two buffers of a tile take a quarter of the room: what stays does not travel.
+  static constexpr int kTilesInRoom = 8;
+
+  int place(int i) const { return (i - begin_) * floats_; }
+  /// The records of a tile.
+  LandmarkRecords at(const work::Tile& tile, Span memory) const {
+    LandmarkRecords records = *this;
+    records.begin_ = tile.begin;
+    records.memory_ = memory;
+    return records;
+  }
+
   int floats_;
   int keyframes_;
+  int begin_ = 0;     ///< number of the first in memory_
+  int resident_ = 0;  ///< so many stay in local memory
+  int tile_ = 0;
   Span memory_;
+  Span behind_;  ///< the others
 };
 
 }  // namespace leviosim::vio

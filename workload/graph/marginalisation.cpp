@@ -109,6 +109,19 @@ void adopt(const Window<P>& window, int departed, const ReducedSystem<P>& system
   prior.bias = window.bias;
 }
 
+/// Besides the records.
+template <class P>
+struct MarginalisationMemory {
+  MarginalisationMemory(work::Arena& arena, const Window<P>& window)
+      : system(arena, window.keyframes, true, kBiasUnknowns),
+        projection(arena, window.capacity.keyframes),
+        interval(arena) {}
+
+  ReducedSystem<P> system;
+  ProjectionScratch<P> projection;
+  JointScratch<P> interval;
+};
+
 }  // namespace
 
 template <class P>
@@ -163,19 +176,19 @@ void eliminate_first(const ReducedSystem<P>& system, int n) {
 }
 
 template <class P>
-void marginalise(work::Arena& arena, const Window<P>& window, int departed,
+void marginalise(work::Machine& machine, const Window<P>& window, int departed,
                  const ReprojectionOptions& visual, const PriorOptions& options,
                  WindowPrior<P>& prior) {
   using F = typename P::F32;
   const typename P::Function function("marginalise");
-  const work::Arena::Frame frame(arena);
-  const LandmarkRecords<P> records(arena, window.capacity.landmarks, window.capacity.keyframes);
-  const ReducedSystem<P> system(arena, window.keyframes, true, kBiasUnknowns);
-  const ProjectionScratch<P> projection(arena, window.capacity.keyframes);
-  const JointScratch<P> interval(arena);
+  const work::Arena::Frame frame(machine.local()), behind(machine.external());
+  const auto others = [&] { return MarginalisationMemory<P>(machine.local(), window); };
+  const LandmarkRecords<P> records(machine, window.capacity.landmarks, window.capacity.keyframes,
+                                   room_beside(machine.local(), others));
+  const auto [system, projection, interval] = others();
   system.clear();
-  add_departing_visual_terms<P>(window, PixelModel<P>(visual), departed, options.tracked_landmarks,
-                                records, projection, system);
+  add_departing_visual_terms<P>(machine, window, PixelModel<P>(visual), departed,
+                                options.tracked_landmarks, records, projection, system);
   add_joint_inertial_terms<P>(window, 1, departed, interval, system);
   add_prior<P>(prior, window, system);
   for (int i : P::range(0, system.unknowns())) {
@@ -253,7 +266,7 @@ typename P::F32 gauge_cost(const WindowPrior<P>& prior, const WindowState<P>& st
   template P::F32 gauge_cost(const WindowPrior<P>&, const WindowState<P>&, const PriorOptions&); \
   template struct WindowPrior<P>;                                                                \
   template void start_prior(const Window<P>&, const PriorOptions&, WindowPrior<P>&);             \
-  template void marginalise(work::Arena&, const Window<P>&, int, const ReprojectionOptions&,     \
+  template void marginalise(work::Machine&, const Window<P>&, int, const ReprojectionOptions&,   \
                             const PriorOptions&, WindowPrior<P>&);                               \
   template P::F32 add_prior(const WindowPrior<P>&, const Window<P>&, const ReducedSystem<P>&);   \
   template P::F32 prior_cost(const WindowPrior<P>&, const WindowState<P>&, const ImuBias<P>&);   \

@@ -81,7 +81,7 @@ void start_prior(const Window<P>& window, const PriorOptions& options, WindowPri
 /// Replaces the prior of `window` by that of the same window without its `departed` oldest
 /// keyframes (0 < departed < window.keyframes). Work memory as for an iteration.
 template <class P>
-void marginalise(work::Arena& arena, const Window<P>& window, int departed,
+void marginalise(work::Machine& machine, const Window<P>& window, int departed,
                  const ReprojectionOptions& visual, const PriorOptions& options,
                  WindowPrior<P>& prior);
 

@@ -142,21 +142,20 @@ struct JointTerms {
   ImuBias<P> trial_bias;
 };
 
-/// The work memory of an iteration, sized for the largest window as the release's is.
+/// The work memory of an iteration besides the records, sized for the largest window as the
+/// release's is.
 template <class P, class Terms>
 struct WorkMemory {
   using Span = typename P::template Span<typename P::F32>;
 
   WorkMemory(work::Arena& arena, const Window<P>& window, const OptimiserOptions& options)
-      : records(arena, window.capacity.landmarks, window.capacity.keyframes),
-        system(Terms::system(arena, window, options)),
+      : system(Terms::system(arena, window, options)),
         elimination(arena, window.capacity.keyframes),
         terms(arena, window, options),
         trial{arena.alloc<Span>("trial poses", kPoseFloats * window.keyframes),
               arena.alloc<Span>("trial velocities", 3 * window.keyframes),
               arena.alloc<Span>("trial points", 3 * window.capacity.landmarks)} {}
 
-  LandmarkRecords<P> records;
   ReducedSystem<P> system;
   EliminationScratch<P> elimination;
   Terms terms;
@@ -175,15 +174,14 @@ void step_keyframes(const Window<P>& window, const ReducedSystem<P>& solved,
 /// @param report  what took part, and the parts of the cost
 /// @return the cost there
 template <class P, class Terms>
-typename P::F32 build(const Window<P>& window, const OptimiserOptions& options,
-                      typename P::F32 lambda, const WorkMemory<P, Terms>& memory,
-                      IterationReport& report) {
+typename P::F32 build(work::Machine& fc, const Window<P>& window, const OptimiserOptions& options,
+                      typename P::F32 lambda, const LandmarkRecords<P>& records,
+                      const WorkMemory<P, Terms>& memory, IterationReport& report) {
   using F = typename P::F32;
   memory.system.clear();
   F cost = 0.0f;
-  const VisualUse use =
-      add_visual_terms<P>(window, PixelModel<P>(options.visual), lambda, memory.records,
-                          memory.elimination, memory.system, cost);
+  const VisualUse use = add_visual_terms<P>(fc, window, PixelModel<P>(options.visual), lambda,
+                                            records, memory.elimination, memory.system, cost);
   report.landmarks = use.landmarks;
   report.observations = use.observations;
   report.visual = work::value(cost);
@@ -210,16 +208,19 @@ IterationReport iterate(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   report.lambda = work::value(lm.lambda);
   if (window.keyframes < 2) return report;
 
-  const work::Arena::Frame frame(fc.local());
-  WorkMemory<P, Terms> memory(fc.local(), window, options);
+  const work::Arena::Frame frame(fc.local()), behind(fc.external());
+  const auto others = [&] { return WorkMemory<P, Terms>(fc.local(), window, options); };
+  const LandmarkRecords<P> records(fc, window.capacity.landmarks, window.capacity.keyframes,
+                                   room_beside(fc.local(), others));
+  WorkMemory<P, Terms> memory = others();
   prepare(memory.terms);
-  const F cost = build<P>(window, options, lm.lambda, memory, report);
+  const F cost = build<P>(fc, window, options, lm.lambda, records, memory, report);
   F trial_cost = cost;
   report.positive_definite = memory.system.solve();
   if (report.positive_definite) {
     step_keyframes<P>(window, memory.system, memory.trial);
     memory.terms.step(memory.system);
-    step_points<P>(window, memory.records, memory.system, memory.trial.points);
+    step_points<P>(fc, window, records, memory.system, memory.trial.points);
     memory.terms.measure_scale(memory.system, lm.lambda, report);
     trial_cost = cost_of_trial<P>(window, memory.trial, options, memory.terms);
   }

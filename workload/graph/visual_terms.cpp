@@ -223,37 +223,42 @@ LandmarkCost<P> landmark_cost(const Window<P>& window, const WindowState<P>& sta
 }  // namespace
 
 template <class P>
-VisualUse add_visual_terms(const Window<P>& window, const PixelModel<P>& model,
-                           typename P::F32 lambda, const LandmarkRecords<P>& records,
-                           const EliminationScratch<P>& scratch, const ReducedSystem<P>& system,
-                           typename P::F32& cost) {
+VisualUse add_visual_terms(work::Machine& machine, const Window<P>& window,
+                           const PixelModel<P>& model, typename P::F32 lambda,
+                           const LandmarkRecords<P>& all, const EliminationScratch<P>& scratch,
+                           const ReducedSystem<P>& system, typename P::F32& cost) {
   using I32 = typename P::I32;
   const typename P::Function function("add_visual_terms");
   VisualUse use;
-  for (int i : P::range(0, window.landmarks)) {
-    const I32 valid = linearise_landmark<P>(window, model, i, records, cost);
-    const int number = work::value(I32(window.observation_numbers[i]));
-    const bool usable = valid >= I32(2) && invert_landmark<P>(records, i, number, lambda);
-    window.lost[i] = work::narrow<typename P::Byte>(I32(usable ? 0 : 1));
-    if (!usable) {
-      freeze_landmark<P>(records, i);
-      continue;
+  const auto add = [&](const LandmarkRecords<P>& records, int begin, int end) {
+    for (int i : P::range(begin, end)) {
+      const I32 valid = linearise_landmark<P>(window, model, i, records, cost);
+      const int number = work::value(I32(window.observation_numbers[i]));
+      const bool usable = valid >= I32(2) && invert_landmark<P>(records, i, number, lambda);
+      window.lost[i] = work::narrow<typename P::Byte>(I32(usable ? 0 : 1));
+      if (!usable) {
+        freeze_landmark<P>(records, i);
+        continue;
+      }
+      eliminate_landmark<P>(window, records, i, scratch, system);
+      ++use.landmarks;
+      use.observations += work::value(valid);
     }
-    eliminate_landmark<P>(window, records, i, scratch, system);
-    ++use.landmarks;
-    use.observations += work::value(valid);
-  }
+  };
+  all.fill(machine, window.landmarks, window.landmarks, add);
   return use;
 }
 
 template <class P>
-void step_points(const Window<P>& window, const LandmarkRecords<P>& records,
+void step_points(work::Machine& machine, const Window<P>& window, const LandmarkRecords<P>& all,
                  const ReducedSystem<P>& solved, typename P::template Span<typename P::F32> to) {
   const typename P::Function function("step_points");
-  for (int i : P::range(0, window.landmarks)) {
-    const Vec3<P> point = load_vec3<P>(window.state.points, 3 * i);
-    store_vec3<P>(to, 3 * i, point + landmark_step<P>(window, records, i, solved));
-  }
+  all.read(machine, window.landmarks, [&](const LandmarkRecords<P>& records, int begin, int end) {
+    for (int i : P::range(begin, end)) {
+      const Vec3<P> point = load_vec3<P>(window.state.points, 3 * i);
+      store_vec3<P>(to, 3 * i, point + landmark_step<P>(window, records, i, solved));
+    }
+  });
 }
 
 template <class P>
@@ -265,12 +270,12 @@ typename P::F32 settle_points(const Window<P>& window, const WindowState<P>& tri
   });
 }
 
-#define LEVIOSIM_INSTANTIATE(P)                                                                   \
-  template VisualUse add_visual_terms(const Window<P>&, const PixelModel<P>&, P::F32,             \
-                                      const LandmarkRecords<P>&, const EliminationScratch<P>&,    \
-                                      const ReducedSystem<P>&, P::F32&);                          \
-  template void step_points(const Window<P>&, const LandmarkRecords<P>&, const ReducedSystem<P>&, \
-                            P::Span<P::F32>);                                                     \
+#define LEVIOSIM_INSTANTIATE(P)                                                                  \
+  template VisualUse add_visual_terms(                                                           \
+      work::Machine&, const Window<P>&, const PixelModel<P>&, P::F32, const LandmarkRecords<P>&, \
+      const EliminationScratch<P>&, const ReducedSystem<P>&, P::F32&);                           \
+  template void step_points(work::Machine&, const Window<P>&, const LandmarkRecords<P>&,         \
+                            const ReducedSystem<P>&, P::Span<P::F32>);                           \
   template P::F32 settle_points(const Window<P>&, const WindowState<P>&, const PixelModel<P>&);
 LEVIOSIM_INSTANTIATE(work::Native)
 LEVIOSIM_INSTANTIATE(work::Counting)

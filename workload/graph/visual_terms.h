@@ -39,16 +39,17 @@ struct VisualUse {
 };
 
 /// Linearises landmark after landmark at `window.state` and adds each to `system`.
+/// @param machine  behind whose local memory records may lie
 /// @return how much of the window took part; the cost is added to `cost`
 template <class P>
-VisualUse add_visual_terms(const Window<P>& window, const PixelModel<P>& model,
-                           typename P::F32 lambda, const LandmarkRecords<P>& records,
-                           const EliminationScratch<P>& scratch, const ReducedSystem<P>& system,
-                           typename P::F32& cost);
+VisualUse add_visual_terms(work::Machine& machine, const Window<P>& window,
+                           const PixelModel<P>& model, typename P::F32 lambda,
+                           const LandmarkRecords<P>& records, const EliminationScratch<P>& scratch,
+                           const ReducedSystem<P>& system, typename P::F32& cost);
 
 /// Steps of the landmarks for the keyframes' step, added to the points: to = from + step.
 template <class P>
-void step_points(const Window<P>& window, const LandmarkRecords<P>& records,
+void step_points(work::Machine& machine, const Window<P>& window, const LandmarkRecords<P>& records,
                  const ReducedSystem<P>& solved, typename P::template Span<typename P::F32> to);
 
 /// Puts back the points of `trial` that their step led out of sight, where they are better off

@@ -165,8 +165,8 @@ void match_keyframe(const FrontEndState<P>& state, Frame<P>& frame) {
   const auto stage = machine.stage(stages::kFrameMatching);
   const ObservedFeatures<P>& old = state.keyframe.features;
   KeyframeMatches<P>& matches = frame.matches;
-  const int capacity = old.list.capacity;
-  const DescriptorSource<P> descriptors = keyframe_descriptors(state, capacity);
+  const DescriptorSource<P> descriptors = keyframe_descriptors(state, old.list.capacity);
+  const int capacity = matches.first_v;
   machine.copy_in(matches.pixels.subspan(0, capacity), old.list.x);
   machine.copy_in(matches.pixels.subspan(matches.first_v, capacity), old.list.y);
   machine.copy_in(matches.landmarks, old.landmarks);

@@ -127,7 +127,7 @@ std::optional<Pose<P>> search_landmarks(const FrontEndState<P>& state, const Fra
   found.points_in_l2 = !landmarks_fit(state, features.count, landmarks);
   found.points = found.points_in_l2 ? state.graph.points.subspan(0, 3 * landmarks)
                                     : local.alloc<Floats>("landmark points", 3 * landmarks);
-  found.matches = alloc_matches<P>(local, features.capacity, "world matches");
+  found.matches = alloc_matches<P>(local, list_capacity(state, features.count), "world matches");
   const Pose<P> T_camera_world = inverse(T_predicted);
   match_around(state, features, T_camera_world, search.radius_px, found);
   const int matches = found.matches.count;

@@ -40,8 +40,8 @@ MatchList<P> match_landmarks(const FrontEndState<P>& state, const Frame<P>& fram
   if (resident)
     descriptors = machine.local().alloc<Words>("landmark descriptors",
                                                kDescriptorWords * graph.capacity.landmarks);
-  MatchList<P> list =
-      alloc_matches<P>(machine.local(), frame.features.list.capacity, "world matches");
+  MatchList<P> list = alloc_matches<P>(
+      machine.local(), list_capacity(state, frame.features.list.count), "world matches");
   if (resident) machine.copy_in(descriptors, graph.descriptors);
   const DescriptorSource<P> reference{descriptors, work::value(graph.landmark_count()), !resident,
                                       "tile of landmark descriptors"};

@@ -15,6 +15,9 @@ Bytes memory_of_epnp(const Profile& profile, int matches, int cores) {
   return Bytes(kMatch * matches) + levio::epnp_memory(matches, cores);
 }
 
+/// For tiles and for the scratch of a core.
+constexpr Bytes kBesideLists{12 * 1024};
+
 /// Descriptors stay where those of two frames have room, as matching needs them, and where they
 /// leave room for EPnP on all cores. Places take theirs from local memory (next/loop).
 template <class P>
@@ -26,6 +29,9 @@ Residence residence_in(const work::Machine& machine, const Profile& profile, con
   const Bytes features = observed_features_size<P>(capacity, true);
   const Bytes beside = std::max(features, memory_of_epnp(profile, capacity, machine.cores()));
   residence.descriptors = profile.loop.enabled || features + beside <= room;
+  // Features, their matches, those of one way, and what is known of the keyframe's features.
+  constexpr std::int64_t kListed = 4 * 6;
+  residence.whole_lists = Bytes(kListed * capacity) + kBesideLists <= room;
   residence.image = observed_features_size<P>(capacity, residence.descriptors) +
                         options.memory_of_whole_image(rig.width, rig.height, machine.cores()) <=
                     room;

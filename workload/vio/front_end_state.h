@@ -2,6 +2,7 @@
 // and change it. Its data persist in L2; L1 is a scratchpad that is empty between frames.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "sim/work/machine.h"
@@ -37,6 +38,13 @@ struct FrontEndState {
   std::uint32_t frame_number = 0;           ///< number of the present frame, from 1 on
   float time_since_keyframe = 0;            ///< time since the last keyframe [s]
 };
+
+/// For how many features, of which there are `number`, a list in local memory has room.
+template <class P>
+int list_capacity(const FrontEndState<P>& state, int number) {
+  const int all = state.keyframe.features.list.capacity;
+  return state.residence.whole_lists ? all : std::min(all, number);
+}
 
 /// Room for the features of the frame, in local memory; their descriptors may lie in L2.
 template <class P>

@@ -35,6 +35,8 @@ Bytes observed_features_size(int capacity, bool descriptors) {
 struct Residence {
   bool image = true;        ///< the whole image and its blurred copy have room; else strips of them
   bool descriptors = true;  ///< those of two frames have room; else those of none stay
+  bool whole_lists = true;  ///< lists of matches have room for all features that an image can have;
+                            ///< else for those that it has
 };
 
 template <class P>

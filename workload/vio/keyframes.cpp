@@ -183,8 +183,11 @@ template <class P>
 void alloc_keyframe_matches(const FrontEndState<P>& state, Frame<P>& frame) {
   using Table = typename KeyframeMatches<P>::Table;
   work::Arena& local = state.machine.local();
-  const int capacity = state.keyframe.features.list.capacity;
-  frame.matches.list = alloc_matches<P>(local, frame.features.list.capacity, "frame matches");
+  const int old = state.keyframe.features.list.count;
+  const int capacity = list_capacity(state, old);
+  // Features of the keyframe that are found by their patches become matches, too.
+  frame.matches.list = alloc_matches<P>(
+      local, list_capacity(state, frame.features.list.count + old), "frame matches");
   frame.matches.pixels = local.alloc<Table>("keypoints of the keyframe", 2 * capacity);
   frame.matches.first_v = capacity;
   frame.matches.landmarks = local.alloc<Table>("landmarks of the keyframe", capacity);

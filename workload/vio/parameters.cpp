@@ -444,6 +444,9 @@ constexpr std::array kParameters = {
     Parameter{"workload.gravity_updates", Kind::toggle, "", 0, 1,
               "new measurement of gravity whenever the vehicle stands still", true,
               LEVIOSIM_FIELD(gravity_updates)},
+    Parameter{"workload.l1", Kind::whole, "KiB", 0, 1'000'000,
+              "budget of L1 for the workload, which leaves the rest to other tasks; 0: all of it",
+              false, LEVIOSIM_FIELD(l1_kib)},
 };
 
 #undef LEVIOSIM_FIELD

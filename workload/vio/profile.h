@@ -167,6 +167,7 @@ struct Profile {
   /// lie as many frames apart.
   int max_snapshots = 10;
 
+  int l1_kib = 0;        ///< of L1 that the workload may use; 0: all of it
   int l1_alignment = 1;  ///< bytes; the release's allocator packs blocks
 
   /// Whether poses are found by EPnP: guided tracking refines predicted ones.

@@ -139,11 +139,13 @@ void append_in_parallel(work::Machine& machine, std::string_view name, int first
 }
 
 /// Calls visit(words, first, count) for all descriptors, or for one tile of them after the other.
+/// @param again  with room they would be in local memory already
 template <class P, class Visit>
 void for_descriptors(work::Machine& machine, const DescriptorSource<P>& from, Bytes room,
-                     Visit&& visit) {
+                     bool again, Visit&& visit) {
   if (!from.in_l2) return visit(from.words, 0, from.count);
-  const work::PassingBlock<P, typename P::U32> block{from.name, from.words, kDescriptorWords};
+  const work::PassingBlock<P, typename P::U32> block{from.name, from.words, kDescriptorWords,
+                                                     again};
   const work::TilePlan plan = work::plan_tiles(machine.local(), from.name, from.count, block.item(),
                                                machine.local().free() - room);
   work::for_each_tile<P>(
@@ -161,7 +163,10 @@ void match(work::Machine& machine, const DescriptorSource<P>& current,
   check(out.capacity >= current.count, "the match list has room for every current feature");
   work::Arena& memory = machine.local();
   const work::Arena::Frame frame(memory);
-  MatchList<P> one_way = alloc_matches<P>(memory, out.capacity, "one-way matches");
+  // As long as the list that comes out; where half of the room would go, as there are features.
+  const bool is_short = Bytes(12LL * out.capacity) > memory.free();
+  MatchList<P> one_way =
+      alloc_matches<P>(memory, is_short ? current.count : out.capacity, "one-way matches");
   const auto kept =
       memory.alloc<typename P::template Span<typename P::I32>>("matches per core", machine.cores());
   // Where both pass in tiles, each has half of the room.
@@ -177,14 +182,15 @@ void match(work::Machine& machine, const DescriptorSource<P>& current,
     else
       machine.fork("search", [&](work::Core& core) { in_share(core.share(count)); });
   };
-  for_descriptors<P>(machine, current, part, [&](DescriptorWords<P> words, int first, int count) {
-    for_descriptors<P>(
-        machine, reference, part, [&](DescriptorWords<P> of, int first_of, int count_of) {
-          search_in(
-              words, first, count,
-              {of, count_of, first_of, first_of == 0, first_of + count_of == reference.count});
-        });
-  });
+  for_descriptors<P>(machine, current, part, true,
+                     [&](DescriptorWords<P> words, int first, int count) {
+                       for_descriptors<P>(machine, reference, part, first > 0,
+                                          [&](DescriptorWords<P> of, int first_of, int count_of) {
+                                            search_in(words, first, count,
+                                                      {of, count_of, first_of, first_of == 0,
+                                                       first_of + count_of == reference.count});
+                                          });
+                     });
   out.count = 0;
   append_in_parallel<P>(
       machine, "two-way filter", 0, one_way.count, kept, out,

@@ -17,7 +17,7 @@ using work::Native;
 struct Departed {
   Departed() : prior(scene.fc.local(), scene.graph.capacity.keyframes) {
     start_prior<Native>(scene.window, {}, prior);
-    marginalise<Native>(scene.fc.local(), scene.window, 1, scene.options.visual, {}, prior);
+    marginalise<Native>(scene.fc, scene.window, 1, scene.options.visual, {}, prior);
   }
 
   /// Information on a step of these unknowns by one.

@@ -30,8 +30,9 @@ struct Linearised {
     system.clear();
     float cost = 0;
     if (parts.visual)
-      use = add_visual_terms<Native>(scene.window, PixelModel<Native>(scene.options.visual), lambda,
-                                     records, elimination, system, cost);
+      use =
+          add_visual_terms<Native>(scene.fc, scene.window, PixelModel<Native>(scene.options.visual),
+                                   lambda, records, elimination, system, cost);
     if (parts.imu) add_inertial_terms<Native>(scene.window, interval, system);
     if (parts.anchor) add_anchor<Native>(scene.window, scene.options.anchor, system);
   }
@@ -121,7 +122,7 @@ void expect_steps_of_the_dense_system(bool imu) {
   ASSERT_TRUE(l.system.solve());
   EXPECT_LT((l.vector() - expected.head(p)).norm(), 2e-3 * expected.head(p).norm());
   std::vector<float> points(static_cast<std::size_t>(3 * scene.window.landmarks));
-  step_points<Native>(scene.window, l.records, l.system,
+  step_points<Native>(scene.fc, scene.window, l.records, l.system,
                       {points.data(), static_cast<int>(points.size())});
   VectorXd steps(points.size());
   for (int i = 0; i < steps.size(); ++i)
@@ -203,7 +204,7 @@ TEST(NormalEquations, LandmarksBehindTheCamerasTakeNoPart) {
   fewer.system.damp(1e-4f);
   ASSERT_TRUE(fewer.system.solve());
   std::vector<float> points(static_cast<std::size_t>(3 * scene.window.landmarks));
-  step_points<Native>(scene.window, fewer.records, fewer.system,
+  step_points<Native>(scene.fc, scene.window, fewer.records, fewer.system,
                       {points.data(), static_cast<int>(points.size())});
   for (int i = 0; i < 30; ++i)
     EXPECT_EQ(points[static_cast<std::size_t>(i)], scene.window.state.points[i]);

@@ -54,7 +54,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Case{160, 120, 8, 8, 1, 60'000}, Case{160, 120, 8, 3, 16, 40'000},
                     Case{161, 119, 8, 8, 1, 45'000}, Case{320, 240, 16, 8, 16, 131'072},
                     Case{640, 480, 32, 8, 1, 131'072}, Case{640, 480, 32, 1, 16, 200'000},
-                    Case{320, 240, 16, 8, 1, 4'000'000}));
+                    Case{320, 240, 16, 8, 1, 4'000'000},
+                    // One row of cells fits once, but not twice.
+                    Case{320, 240, 16, 8, 1, 56'000}, Case{320, 240, 16, 3, 16, 56'000}));
 
 TEST(Strips, MoveEveryRowOncePerPassAndThoseAroundAgain) {
   const cv::Mat image = rectangle_image(320, 240, 7);
@@ -76,7 +78,7 @@ TEST(Strips, OfARowOfCellsThatDoNotFitAreRefused) {
   const cv::Mat image = rectangle_image(640, 480, 7);
   ExtractorOptions options;
   options.cell = 64;
-  auto machine = small_machine<work::Native>(8, Bytes(131'072));
+  auto machine = small_machine<work::Native>(8, Bytes(65'536));
   try {
     extract_in_strips<work::Native>(machine, image, options);
     FAIL() << "accepted";

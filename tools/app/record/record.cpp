@@ -30,6 +30,8 @@ constexpr std::array kKeptOfStages{"stages.{}.calls",
                                    "stages.{}.cycles.single.mean",
                                    "stages.{}.cycles.parallel.mean",
                                    "stages.{}.memory.parallel",
+                                   "stages.{}.tiles",
+                                   "stages.{}.tile_bytes",
                                    "energy.{}.call"};
 
 bool is_detail(const std::string& name) {
@@ -51,6 +53,7 @@ std::set<std::string> kept_names(const RunRecord& run) {
   for (const Statistic& s : run.statistics) {
     if (!blocks.empty() && s.name.starts_with(blocks)) names.insert(s.name);
     if (s.name.starts_with("memory.l2.") && s.name.ends_with(".bytes")) names.insert(s.name);
+    if (s.name == "memory.external.bytes") names.insert(s.name);
   }
   return names;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "sim/energy/area.h"
 #include "sim/work/counts.h"
@@ -117,6 +118,9 @@ void add_stage(StatisticList& list, const RunResult& run, const StageResult& sta
   list.add(path + "memory.parallel", "byte", "peak in its memory on N cores",
            stage.memory.parallel.count());
   add_blocks(list, path + "memory.", stage.memory.blocks);
+  if (stage.transfers.tiles == 0) return;
+  list.add(path + "tiles", "1", "tiles that passed through its memory", stage.transfers.tiles);
+  list.add(path + "tile_bytes", "byte", "size of these tiles together", stage.transfers.tile_bytes.count());
 }
 
 void add_frames(StatisticList& list, const RunResult& run) {
@@ -261,6 +265,13 @@ void add_l2(StatisticList& list, const RunResult& run) {
   }
 }
 
+void add_external(StatisticList& list, const RunResult& run) {
+  for (const L2Row& row : run.external) {
+    list.add("memory.external.bytes", "byte", "occupation of external memory", row.bytes.count());
+    add_blocks(list, "memory.external.", row.blocks);
+  }
+}
+
 /// A figure and the ends of its band.
 template <class T>
 void add_banded(StatisticList& list, const std::string& name, std::string_view unit,
@@ -275,12 +286,13 @@ void add_banded(StatisticList& list, const std::string& name, std::string_view u
            value([](const E& e) { return e.high(); }));
 }
 
-void add_energy_row(StatisticList& list, const EnergyRow& row) {
+void add_energy_row(StatisticList& list, const EnergyRow& row,
+                    std::span<const sim::DomainInfo> domains) {
   const std::string path = fmt::format("energy.{}.", key_of(row.name));
   add_banded(list, path + "call", "uJ", fmt::format("energy per {}", row.unit), row.per_call(),
              1e6);
   add_banded(list, path + "power", "mW", "mean power while it runs", row.power(), 1e3);
-  for (const sim::DomainInfo& info : sim::kDomains)
+  for (const sim::DomainInfo& info : domains)
     add_banded(list, fmt::format("{}domain.{}", path, info.name), "mJ", info.description,
                std::optional(row.energy[info.domain]), 1e3);
 }
@@ -289,7 +301,8 @@ void add_energy(StatisticList& list, const RunResult& run) {
   const std::optional<RunEnergy> energy = energy_of(run);
   if (!energy) return;
   list.add("run.voltage", "V", "supply of the chip", run.chip.supply.voltage.count());
-  for (const EnergyRow& row : energy->rows) add_energy_row(list, row);
+  const auto domains = sim::domains_of(energy->total());
+  for (const EnergyRow& row : energy->rows) add_energy_row(list, row, domains);
   add_banded(list, "energy.total", "mJ", "energy of the whole run",
              std::optional(energy->total().total()), 1e3);
   add_banded(list, "energy.frame", "mJ", "energy per frame, idle time included",
@@ -340,6 +353,7 @@ StatisticList list_of(const RunResult& run) {
     add_frame_figures(list, run);
     add_missed_share(list, run);
     add_l2(list, run);
+    add_external(list, run);
     add_energy(list, run);
     add_area(list, run);
     list.add("optimiser.published", "1", "results that reached the front end",

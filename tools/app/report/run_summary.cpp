@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -106,30 +105,51 @@ std::string memory_line(const RunResult& run) {
                         printable(worst->name));
   Bytes l2;
   for (const L2Row& row : run.l2) l2 += row.bytes;
-  return text + fmt::format(" L2 {}", of_memory(l2, run.l2_size));
+  text += fmt::format(" L2 {}", of_memory(l2, run.l2_size));
+  Bytes external;
+  for (const L2Row& row : run.external) external += row.bytes;
+  if (external > Bytes(0))
+    text += fmt::format(", external {}", of_memory(external, run.external_size));
+  return text;
 }
 
-/// What has no room in L1 and passes through it in tiles; empty if all has.
+/// Of the passages of a stage, what a program whose memory holds all would not have moved.
+Bytes more_than_resident(const RunResult& run, const std::string& stage) {
+  Bytes more;
+  for (const work::Passage& passage : run.passages)
+    if (passage.stage == stage) more += passage.more;
+  return more;
+}
+
+/// "triangulation 3.1 tiles (3.9 kB)".
+std::string tiles_of(const RunResult& run, const StageResult& stage, double frames) {
+  const auto kb = [&](Bytes bytes) { return static_cast<double>(bytes.count()) * 1e-3 / frames; };
+  const std::string more =
+      run.passages.empty() ? ""
+                           : fmt::format(", {:.1f} more", kb(more_than_resident(run, stage.name)));
+  return fmt::format("{} {:.1f} tiles ({:.1f} kB{})", printable(stage.name),
+                     static_cast<double>(stage.transfers.tiles) / frames,
+                     kb(stage.transfers.tile_bytes), more);
+}
+
+/// What has no room in a memory and passes through it in tiles, how much more that is than a
+/// program with room would move, where the work was computed, and how long cores wait for the DMA
+/// in these stages; empty if all has room.
 std::string tiles_line(const RunResult& run) {
-  std::vector<work::Passage> stages;  // all blocks of a stage as one
-  std::map<std::string_view, int> blocks;
-  for (const work::Passage& passage : run.passages) {
-    if (blocks[passage.stage]++ == 0) stages.push_back({passage.stage, passage.block});
-    work::Passage& sum = *std::find_if(stages.begin(), stages.end(), [&](const work::Passage& s) {
-      return s.stage == passage.stage;
-    });
-    sum.tiles = std::max(sum.tiles, passage.tiles);
-    sum.bytes += passage.bytes;
-  }
   const auto frames = static_cast<double>(std::max<std::size_t>(1, run.frames.size()));
   std::vector<std::string> texts;
-  for (const work::Passage& s : stages)
-    texts.push_back(fmt::format(
-        "{} ({} block{}, {:.1f} tiles and {:.1f} kB a frame)", printable(s.stage), blocks[s.stage],
-        blocks[s.stage] == 1 ? "" : "s", static_cast<double>(s.tiles) / frames,
-        static_cast<double>(s.bytes.count()) * 1e-3 / frames));
-  return texts.empty() ? std::string()
-                       : fmt::format("in tiles through L1: {}", fmt::join(texts, kComma));
+  double waited_s = 0;
+  for (const StageResult& stage : run.stages) {
+    if (stage.transfers.tiles == 0) continue;
+    texts.push_back(tiles_of(run, stage, frames));
+    const int cores = stage.on_controller ? 1 : run.cores;
+    waited_s += stage.account.team[sim::Mechanism::Transfer] / cores /
+                static_cast<double>(clock_of(run, stage).count());
+  }
+  if (texts.empty()) return {};
+  texts.back() +=
+      fmt::format(" a frame, {:.2f} ms of it waiting for the DMA", waited_s * 1e3 / frames);
+  return fmt::format("in tiles: {}", fmt::join(texts, kComma));
 }
 
 /// Empty where the platform has no energy figures.

@@ -129,6 +129,9 @@ std::vector<Occupant> occupants(const RunResult& run) {
   }
   for (const L2Row& part : run.l2)
     all.push_back({printable(part.name), "L2", run.l2_size, part.bytes, {}, &part.blocks});
+  for (const L2Row& part : run.external)
+    all.push_back(
+        {printable(part.name), "external", run.external_size, part.bytes, {}, &part.blocks});
   return all;
 }
 
@@ -368,7 +371,9 @@ std::string power_table(const RunResult& run, int width) {
   const std::optional<RunEnergy> energy = energy_of(run);
   if (!energy) return {};
   std::vector<Head> columns{{"stage", kLeft}};
-  for (const sim::DomainInfo& info : sim::kDomains)
+  const sim::DomainEnergies total = energy->total();
+  const auto domains = sim::domains_of(total);
+  for (const sim::DomainInfo& info : domains)
     columns.push_back({std::string(info.name), kRight, 1});
   columns.push_back({"total"});
   Table table(std::move(columns));
@@ -377,12 +382,12 @@ std::string power_table(const RunResult& run, int width) {
     const auto cell = [&](const Estimate<Joules>& e) {
       return time > Seconds(0) ? fmt::format("{:.2f}", (e.value / time).count() * 1e3) : kNothing;
     };
-    for (const sim::DomainInfo& info : sim::kDomains) cells.push_back(cell(energies[info.domain]));
+    for (const sim::DomainInfo& info : domains) cells.push_back(cell(energies[info.domain]));
     cells.push_back(cell(energies.total()));
     table.add(std::move(cells));
   };
   for (const EnergyRow& row : energy->rows) add(name_of(row), row.energy, row.time);
-  add("all the time", energy->total(), energy->time);
+  add("all the time", total, energy->time);
   return "where the power goes while a stage runs [mW]\n" + terminal_text(table, width);
 }
 

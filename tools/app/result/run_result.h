@@ -52,6 +52,8 @@ struct FrameResult : vio::FrameFacts, soc::FrameTiming {
 
 /// Names of the rows of L2 that do not come from the workload.
 inline constexpr const char* kOptimiserL2 = "optimiser";
+/// … and what the optimiser keeps in external memory.
+inline constexpr const char* kOptimiserExternal = "optimiser outside";
 inline constexpr const char* kCameraL2 = "camera";
 
 /// One row of the L2 part of the memory table.
@@ -89,7 +91,9 @@ struct RunResult {
   Cycles offload;                      ///< of the cluster's jobs, outside of stages
   std::vector<FrameResult> frames;     ///< frames that the front end processed
   std::optional<CameraRecord> camera;  ///< of a closed loop
+  Bytes external_size;
   std::vector<L2Row> l2;
+  std::vector<L2Row> external;  ///< what lies in external memory, since L2 has no room for it
   std::vector<work::Passage> passages;   ///< through L1 in tiles, where the work was computed
   std::int64_t optimiser_published = 0;  ///< results that reached the front end
   std::int64_t optimiser_late = 0;       ///< frames at whose start the controller was still busy

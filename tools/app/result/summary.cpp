@@ -62,6 +62,13 @@ std::optional<Estimate<Watts>> power_over(const Estimate<Joules>& energy, Second
   return energy / time;
 }
 
+/// With what external memory takes, if it keeps something.
+sim::DomainEnergies energy_with_external(const RunResult& run, sim::Activity activity,
+                                         const sim::ChipConfig& chip) {
+  if (!run.external.empty()) activity.external_on = activity.time;
+  return sim::energy_of(activity, chip);
+}
+
 EnergyRow row_of(const RunResult& run, const StageResult& stage, const sim::ChipConfig& chip) {
   const sim::Activity activity =
       stage.on_controller ? sim::controller_activity(chip, stage.counts, stage.transfers,
@@ -73,7 +80,7 @@ EnergyRow row_of(const RunResult& run, const StageResult& stage, const sim::Chip
           stage.on_controller,
           stage.calls,
           stage.on_controller ? activity.controller_working : activity.time,
-          sim::energy_of(activity, chip)};
+          energy_with_external(run, activity, chip)};
 }
 
 Seconds cluster_time(const std::vector<EnergyRow>& rows) {
@@ -115,8 +122,9 @@ RunEnergy energy_on(const RunResult& run, const sim::ChipConfig& chip,
   for (const StageResult& stage : run.stages) energy.rows.push_back(row_of(run, stage, chip));
   energy.time = time ? *time : duration(run, chip, energy.rows);
   const Seconds idle = std::max(energy.time - cluster_time(energy.rows), Seconds(0));
-  energy.rows.push_back({kIdle, "frame", false, energy.frames, idle,
-                         sim::energy_of(sim::idle_activity(chip, run.cores, idle), chip)});
+  energy.rows.push_back(
+      {kIdle, "frame", false, energy.frames, idle,
+       energy_with_external(run, sim::idle_activity(chip, run.cores, idle), chip)});
   return energy;
 }
 

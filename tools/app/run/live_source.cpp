@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -36,6 +37,12 @@ bool follows_offload(const RunRequest& request) {
   return request.recording || sim::has_accelerators(request.platform.config);
 }
 
+/// Of which nothing is used where L2 has room.
+Bytes external_of(const RunRequest& request) {
+  const sim::ExternalMemoryConfig& memory = request.platform.config.controller.external;
+  return request.native || memory.bytes_per_second <= 0 ? Bytes(0) : memory.size;
+}
+
 work::MachineConfig controller_machine(const RunRequest& request) {
   Bytes l2 = request.platform.config.l2.size;
   if (request.camera) l2 -= soc::second_buffer(request.image_size.width, request.image_size.height);
@@ -45,7 +52,8 @@ work::MachineConfig controller_machine(const RunRequest& request) {
           .alignment = 4,
           .record = !request.native,
           .offload = follows_offload(request),
-          .code = &platform::compiled_code()};
+          .code = &platform::compiled_code(),
+          .external = external_of(request)};
 }
 
 /// The pose that the workload reports for the camera, of the body and in double precision.
@@ -81,15 +89,23 @@ traces::Trajectory located_poses(const RunResult& run) {
 
 }  // namespace
 
+Bytes l1_of(const RunRequest& request, const vio::Profile& profile) {
+  const Bytes all = request.platform.config.cluster.l1.size;
+  return profile.l1_kib > 0 ? std::min(all, Bytes(1024LL * profile.l1_kib)) : all;
+}
+
 work::MachineConfig cluster_machine(const RunRequest& request, int alignment) {
-  return {
-      .cores = request.cores,
-      .memory = "L1",
-      .capacity = request.native ? native_room(request) : request.platform.config.cluster.l1.size,
-      .alignment = alignment,
-      .record = !request.native,
-      .offload = follows_offload(request),
-      .code = &platform::compiled_code()};
+  return cluster_machine(request, alignment, request.platform.config.cluster.l1.size);
+}
+
+work::MachineConfig cluster_machine(const RunRequest& request, int alignment, Bytes l1) {
+  return {.cores = request.cores,
+          .memory = "L1",
+          .capacity = request.native ? native_room(request) : l1,
+          .alignment = alignment,
+          .record = !request.native,
+          .offload = follows_offload(request),
+          .code = &platform::compiled_code()};
 }
 
 std::vector<StageResult> named_stages(const std::vector<vio::StageName>& names) {
@@ -108,7 +124,7 @@ LiveSource::LiveSource(const RunRequest& request)
     : profile_(profile_of(request)),
       evaluate_(request.evaluate),
       feed_(request),
-      cluster_(cluster_machine(request, profile_.l1_alignment)),
+      cluster_(cluster_machine(request, profile_.l1_alignment, l1_of(request, profile_))),
       controller_(controller_machine(request)),
       odometry_(vio::make_odometry(!request.native, profile_, feed_.rig(), cluster_, controller_)) {
   if (profile_.use_imu && feed_.data().imu.empty())
@@ -171,7 +187,11 @@ void LiveSource::describe(RunResult& result) const {
                                     {"pose graph", odometry_->pose_graph_memory()},
                                     {"loop closure", odometry_->loop_memory()}})
     if (arena.used() > Bytes(0)) result.l2.push_back({name, arena.used(), arena.live()});
+  if (const work::Arena& external = controller_.external(); external.peak() > Bytes(0))
+    result.external.push_back({kOptimiserExternal, external.peak(), external.blocks_at_peak()});
   result.passages = cluster_.passages();
+  result.passages.insert(result.passages.end(), controller_.passages().begin(),
+                         controller_.passages().end());
   if (evaluate_ && !feed_.data().ground_truth.empty() && result.trajectory.size() >= kFewestPoses &&
       why_incomparable(result).empty())
     evaluate(result);

@@ -47,6 +47,11 @@ class LiveSource : public RunSource {
 
 /// The machine of the request's cluster.
 work::MachineConfig cluster_machine(const RunRequest& request, int alignment);
+/// The same with so much L1.
+work::MachineConfig cluster_machine(const RunRequest& request, int alignment, Bytes l1);
+
+/// What the profile leaves its workload of the request's L1.
+Bytes l1_of(const RunRequest& request, const vio::Profile& profile);
 
 /// Stages that were not called yet.
 std::vector<StageResult> named_stages(const std::vector<vio::StageName>& names);

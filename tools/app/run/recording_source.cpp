@@ -84,7 +84,8 @@ void RecordingSource::describe(RunResult& result) const {
   for (const vio::FrameFact& fact : vio::kFrameFacts) info.facts.emplace_back(fact.name);
   for (const StageResult& stage : empty_stages())
     info.stages.push_back({stage.name, stage.unit, stage.on_controller});
-  for (const L2Row& row : result.l2) info.l2.push_back({row.name, row.bytes, row.blocks});
+  for (const std::vector<L2Row>* memory : {&result.l2, &result.external})
+    for (const L2Row& row : *memory) info.l2.push_back({row.name, row.bytes, row.blocks});
   info.ate = result.ate;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <span>
 
 #include "sim/work/op.h"
 #include "tools/app/result/camera_figures.h"
@@ -181,9 +182,10 @@ const Columns<EnergyCsvRow>& energy_table() {
   return table;
 }
 
-void add_energy(std::vector<EnergyCsvRow>& rows, const EnergyRow& row) {
+void add_energy(std::vector<EnergyCsvRow>& rows, const EnergyRow& row,
+                std::span<const sim::DomainInfo> domains) {
   const auto add = [&](const std::string& quantity, std::string_view unit, double scale) {
-    for (const sim::DomainInfo& info : sim::kDomains)
+    for (const sim::DomainInfo& info : domains)
       rows.push_back({row.name, quantity, info.name, row.energy[info.domain], scale, unit});
     rows.push_back({row.name, quantity, "total", row.energy.total(), scale, unit});
   };
@@ -226,6 +228,8 @@ Table memory_rows(const RunResult& run) {
   }
   for (const L2Row& row : run.l2)
     add_peak(rows, {"L2", run.l2_size, row.name, "peak", "", 1, row.bytes}, row.blocks);
+  for (const L2Row& row : run.external)
+    add_peak(rows, {"external", run.external_size, row.name, "peak", "", 1, row.bytes}, row.blocks);
   return table_of(memory_table(), rows);
 }
 
@@ -238,8 +242,9 @@ Table energy_rows(const RunResult& run) {
   const std::optional<RunEnergy> energy = energy_of(run);
   if (!energy) return Table{{}};
   std::vector<EnergyCsvRow> rows;
-  for (const EnergyRow& row : energy->rows) add_energy(rows, row);
-  add_energy(rows, {"all", "frame", false, energy->frames, energy->time, energy->total()});
+  const auto domains = sim::domains_of(energy->total());
+  for (const EnergyRow& row : energy->rows) add_energy(rows, row, domains);
+  add_energy(rows, {"all", "frame", false, energy->frames, energy->time, energy->total()}, domains);
   return table_of(energy_table(), rows);
 }
 

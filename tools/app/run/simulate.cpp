@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "sim/base/error.h"
 #include "sim/soc/simulation.h"
 #include "sim/work/arena.h"
+#include "tools/app/run/least_memory.h"
+#include "tools/app/run/live_source.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_observer.h"
 #include "tools/app/run/run_source.h"
@@ -83,6 +86,7 @@ void describe(RunResult& result, const RunRequest& request, const RunSource& sou
   if (result.timed) result.chip = chip;
   result.l1_size = chip.cluster.l1.size;
   result.l2_size = chip.l2.size;
+  result.external_size = chip.controller.external.size;
   for (const FrameResult& frame : result.frames) {
     if (frame.pose.T_world_body.matrix().allFinite())
       result.trajectory.push_back(frame.pose);
@@ -150,6 +154,20 @@ std::string advice_on_size(const RunRequest& request) {
       size.width, size.height, features(size), extractor.per_cell, extractor.cell);
 }
 
+/// How to have a memory with more room.
+std::string larger_memory(const RunRequest& request, const work::MemoryOverflow& overflow) {
+  if (overflow.memory() == "L2") return "a larger l2.size has more";
+  const Bytes all = request.platform.config.cluster.l1.size;
+  const bool is_odometry = vio::other_profile(request.profile) == nullptr;
+  const Bytes had = is_odometry ? l1_of(request, profile_of(request)) : all;
+  const std::optional<Bytes> least = least_l1(request, had);
+  const auto kib = [](Bytes size) { return (size.count() + 1023) / 1024; };
+  if (least && *least <= all)
+    return fmt::format("workload.l1={}KiB is the least that works", kib(*least));
+  if (least) return fmt::format("cluster.l1.size={}KiB is the least that works", kib(*least));
+  return "a larger cluster.l1.size has more";
+}
+
 RunResult run_on_chip(const RunRequest& request, const ProgressCallback& progress) {
   try {
     const std::unique_ptr<RunSource> live = make_source(request);
@@ -160,11 +178,9 @@ RunResult run_on_chip(const RunRequest& request, const ProgressCallback& progres
     return result;
   } catch (const work::MemoryOverflow& overflow) {
     throw work::MemoryOverflow(
-        fmt::format(
-            "{}: {}; {} has more{} (leviosim platforms feasibility says what each chip lacks)",
-            request.platform.name, overflow.what(),
-            overflow.memory() == "L2" ? "a larger l2.size" : "a larger cluster.l1.size",
-            advice_on_size(request)),
+        fmt::format("{}: {}; {}{} (leviosim platforms feasibility says what each chip lacks)",
+                    request.platform.name, overflow.what(), larger_memory(request, overflow),
+                    advice_on_size(request)),
         overflow.memory());
   }
 }

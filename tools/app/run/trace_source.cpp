@@ -106,7 +106,8 @@ void describe_recording(const traces::WorkTrace& trace, RunResult& result) {
   result.image_width = info.image_width;
   result.image_height = info.image_height;
   for (const traces::WorkTraceInfo::Memory& memory : info.l2)
-    result.l2.push_back({memory.name, memory.bytes, memory.blocks});
+    (memory.name == kOptimiserExternal ? result.external : result.l2)
+        .push_back({memory.name, memory.bytes, memory.blocks});
   result.ate = info.ate;
 }
 

@@ -80,22 +80,21 @@ typename P::F32 kinematic_cost(const Window<P>& window, const WindowState<P>& st
   return 0.5f * weight * sum;
 }
 
-/// The work memory of an iteration, sized for the largest window.
+/// The work memory of an iteration besides the records, sized for the largest window.
 template <class P>
 struct WorkMemory {
   using Span = typename P::template Span<typename P::F32>;
   using Bytes = typename P::template Span<typename P::Byte>;
 
   WorkMemory(work::Arena& arena, const Window<P>& window, const OptimiserOptions& options)
-      : records(arena, window.capacity.landmarks, window.capacity.keyframes),
-        cleared(arena.alloc<Bytes>("cleared record", records.floats() * 4)),
+      : cleared(arena.alloc<Bytes>("cleared record",
+                                   4 * LandmarkRecords<P>::floats_of(window.capacity.keyframes))),
         system(arena, window.keyframes, options.use_imu),
         interval(arena),
         trial{arena.alloc<Span>("trial poses", kPoseFloats * window.keyframes),
               arena.alloc<Span>("trial velocities", 3 * window.keyframes),
               arena.alloc<Span>("trial points", 3 * window.capacity.landmarks)} {}
 
-  LandmarkRecords<P> records;
   Bytes cleared;
   ReducedSystem<P> system;
   IntervalScratch<P> interval;
@@ -133,12 +132,14 @@ void damp(const ReducedSystem<P>& system, typename P::F32 lambda) {
 /// Linearises everything at the window's state.
 /// @return the cost there
 template <class P>
-typename P::F32 build(const Window<P>& window, const OptimiserOptions& options,
-                      typename P::F32 lambda, const WorkMemory<P>& memory, VisualUse& use) {
+typename P::F32 build(work::Machine& machine, const Window<P>& window,
+                      const OptimiserOptions& options, typename P::F32 lambda,
+                      const LandmarkRecords<P>& records, const WorkMemory<P>& memory,
+                      VisualUse& use) {
   using F = typename P::F32;
   memory.system.clear();
   F cost = 0.0f;
-  use = levio::add_visual_terms<P>(window, PixelModel<P>(options.visual), lambda, memory.records,
+  use = levio::add_visual_terms<P>(machine, window, PixelModel<P>(options.visual), lambda, records,
                                    memory.cleared, memory.system, cost);
   if (options.use_imu) {
     cost += add_inertial_terms<P>(window, memory.interval, memory.system);
@@ -180,13 +181,16 @@ IterationReport optimise_once(work::Machine& machine, Window<P>& window, LmState
   report.lambda = work::value(lm.lambda);
   if (window.keyframes < 2) return report;
 
-  const work::Arena::Frame frame(machine.local());
-  const WorkMemory<P> memory(machine.local(), window, options);
+  const work::Arena::Frame frame(machine.local()), behind(machine.external());
+  const auto others = [&] { return WorkMemory<P>(machine.local(), window, options); };
+  const LandmarkRecords<P> records(machine, window.capacity.landmarks, window.capacity.keyframes,
+                                   room_beside(machine.local(), others));
+  const WorkMemory<P> memory = others();
   VisualUse use;
-  const F cost = build<P>(window, options, lm.lambda, memory, use);
+  const F cost = build<P>(machine, window, options, lm.lambda, records, memory, use);
   report.positive_definite = solve<P>(memory.system);
   step_keyframes<P>(window, memory.system, memory.trial);
-  step_points<P>(window, memory.records, memory.system, memory.trial.points);
+  step_points<P>(machine, window, records, memory.system, memory.trial.points);
   const F visual_cost =
       levio::settle_points<P>(window, memory.trial, PixelModel<P>(options.visual));
   const F trial_cost = add_other_costs<P>(window, memory.trial, options, memory, visual_cost);

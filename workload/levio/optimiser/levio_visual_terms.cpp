@@ -219,25 +219,29 @@ LandmarkCost<P> landmark_cost(const Window<P>& window, const WindowState<P>& sta
 }  // namespace
 
 template <class P>
-VisualUse add_visual_terms(const Window<P>& window, const PixelModel<P>& model,
-                           typename P::F32 lambda, const LandmarkRecords<P>& records,
+VisualUse add_visual_terms(work::Machine& machine, const Window<P>& window,
+                           const PixelModel<P>& model, typename P::F32 lambda,
+                           const LandmarkRecords<P>& all,
                            typename P::template Span<typename P::Byte> cleared,
                            const ReducedSystem<P>& system, typename P::F32& cost) {
   using I32 = typename P::I32;
   const typename P::Function function("levio_add_visual_terms");
   VisualUse use;
-  for (int i : P::range(0, window.capacity.landmarks)) {
-    clear_record<P>(cleared, records.record(i));
-    if (I32(i) >= I32(window.landmarks)) continue;
-    const I32 valid = linearise<P>(window, model, i, records, cost);
-    const int number = work::value(I32(window.observation_numbers[i]));
-    const bool usable = valid >= I32(2) && invert_landmark<P>(records, i, number, lambda);
-    window.lost[i] = work::narrow<typename P::Byte>(I32(usable ? 0 : 1));
-    if (!usable) continue;
-    eliminate_landmark<P>(window, records, i, system);
-    ++use.landmarks;
-    use.observations += work::value(valid);
-  }
+  const auto add = [&](const LandmarkRecords<P>& records, int begin, int end) {
+    for (int i : P::range(begin, end)) {
+      clear_record<P>(cleared, records.record(i));
+      if (I32(i) >= I32(window.landmarks)) continue;
+      const I32 valid = linearise<P>(window, model, i, records, cost);
+      const int number = work::value(I32(window.observation_numbers[i]));
+      const bool usable = valid >= I32(2) && invert_landmark<P>(records, i, number, lambda);
+      window.lost[i] = work::narrow<typename P::Byte>(I32(usable ? 0 : 1));
+      if (!usable) continue;
+      eliminate_landmark<P>(window, records, i, system);
+      ++use.landmarks;
+      use.observations += work::value(valid);
+    }
+  };
+  all.fill(machine, window.capacity.landmarks, window.landmarks, add);
   return use;
 }
 
@@ -250,10 +254,10 @@ typename P::F32 settle_points(const Window<P>& window, const WindowState<P>& tri
   });
 }
 
-#define LEVIOSIM_INSTANTIATE(P)                                                       \
-  template VisualUse add_visual_terms(const Window<P>&, const PixelModel<P>&, P::F32, \
-                                      const LandmarkRecords<P>&, P::Span<P::Byte>,    \
-                                      const ReducedSystem<P>&, P::F32&);              \
+#define LEVIOSIM_INSTANTIATE(P)                                                               \
+  template VisualUse add_visual_terms(work::Machine&, const Window<P>&, const PixelModel<P>&, \
+                                      P::F32, const LandmarkRecords<P>&, P::Span<P::Byte>,    \
+                                      const ReducedSystem<P>&, P::F32&);                      \
   template P::F32 settle_points(const Window<P>&, const WindowState<P>&, const PixelModel<P>&);
 LEVIOSIM_INSTANTIATE(work::Native)
 LEVIOSIM_INSTANTIATE(work::Counting)

@@ -12,11 +12,13 @@
 namespace leviosim::vio::levio {
 
 /// Linearises landmark after landmark at `window.state` and adds each to `system`.
+/// @param machine  behind whose local memory records may lie
 /// @param cleared  as many bytes as a record has
 /// @return how much of the window took part; the cost is added to `cost`
 template <class P>
-VisualUse add_visual_terms(const Window<P>& window, const PixelModel<P>& model,
-                           typename P::F32 lambda, const LandmarkRecords<P>& records,
+VisualUse add_visual_terms(work::Machine& machine, const Window<P>& window,
+                           const PixelModel<P>& model, typename P::F32 lambda,
+                           const LandmarkRecords<P>& records,
                            typename P::template Span<typename P::Byte> cleared,
                            const ReducedSystem<P>& system, typename P::F32& cost);
 

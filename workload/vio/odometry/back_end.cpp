@@ -87,7 +87,7 @@ void BackEnd<P>::update_prior() {
   if (departed == window_.keyframes) {
     prior_.keyframes = 0;
   } else if (departed > 0) {
-    marginalise<P>(machine_.local(), window_, departed, options_.visual, options_.prior, prior_);
+    marginalise<P>(machine_, window_, departed, options_.visual, options_.prior, prior_);
     forget_departed<P>(window_, departed, options_.prior.tracked_landmarks, graph_);
   }
 }

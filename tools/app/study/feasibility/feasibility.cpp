@@ -8,6 +8,7 @@
 #include "sim/base/csv.h"
 #include "sim/base/interruption.h"
 #include "sim/chip/accelerator.h"
+#include "sim/work/arena.h"
 #include "tools/app/result/energy_summary.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/replay.h"
@@ -17,11 +18,13 @@
 namespace leviosim::tools {
 namespace {
 
-/// What the work is recorded on. It only decides where scratch lies in L1.
+/// What the work is recorded on; its memories decide what passes in tiles.
 constexpr const char* kRecordedOn = "gap9";
 /// Between two frames: no chip of this class is busy for so long.
 constexpr std::int64_t kLeisurelyNs = 20'000'000'000;
 constexpr Bytes kUnlimited{std::int64_t{1} << 40};
+/// Of L2, where what is short of it is the verdict.
+constexpr Bytes kPlenty{std::int64_t{1} << 26};
 
 /// Recorded frames of which each has all the time that it needs, in memories that hold everything.
 class LeisurelySource : public TraceSource {
@@ -93,25 +96,57 @@ double Feasibility::frame_ms() const {
   return shares_core ? front_end_ms + optimiser_ms : std::max(front_end_ms, optimiser_ms);
 }
 
-const traces::WorkTrace& FeasibilityStudy::work_among(int cores) {
-  std::unique_ptr<traces::WorkTrace>& work = work_[cores];
-  if (work) return *work;
-  // What is computed does not depend on the chip; each core needs a scratch of L1.
+/// In memories of the chip's sizes if those of the chip on which all is recorded hold more than it
+/// has. If that is impossible even so, the verdict is of the larger ones.
+const FeasibilityStudy::Recorded& FeasibilityStudy::work_on(const FeasibilityPoint& point) {
+  const sim::ChipConfig& chip = point.platform.config;
+  const Recorded& shared = work_in({point.cores, {}, {}, {}});
+  if (shared.l1 <= chip.cluster.l1.size && shared.l2 <= chip.l2.size) return shared;
+  const sim::ExternalMemoryConfig& external = chip.controller.external;
+  const bool has_external = external.bytes_per_second > 0 && external.size > Bytes(0);
+  Memories own{point.cores, chip.cluster.l1.size, kPlenty, {}};
+  if (has_external) own.l2 = chip.l2.size, own.external = external.size;
+  try {
+    return work_in(own);
+  } catch (const work::MemoryOverflow&) {
+    return shared;
+  }
+}
+
+const FeasibilityStudy::Recorded& FeasibilityStudy::work_in(const Memories& memories) {
+  Recorded& work = work_[memories];
+  if (work.trace) return work;
+  const int cores = memories.cores;
   std::vector<std::string> overrides;
+  const auto set = [&](const char* path, std::int64_t value) {
+    overrides.push_back(fmt::format("{}={}B", path, value));
+  };
   const sim::ClusterConfig cluster = platform::load_platform(kRecordedOn).cluster;
-  if (cores > cluster.max_workers)
-    overrides = {
-        fmt::format("cluster.max_workers={}", cores),
-        fmt::format("cluster.l1.size={}", cluster.l1.size.count() * cores / cluster.max_workers)};
+  Bytes l1 = memories.l1.value_or(cluster.l1.size);
+  if (cores > cluster.max_workers) {
+    overrides.push_back(fmt::format("cluster.max_workers={}", cores));
+    if (!memories.l1) l1 = Bytes(l1.count() * cores / cluster.max_workers);  // each needs a scratch
+  }
+  if (l1 != cluster.l1.size) set("cluster.l1.size", l1.count());
+  if (memories.l2) set("l2.size", memories.l2->count());
+  if (memories.external) set("controller.external.size", memories.external->count());
   RunRequest request = request_;
   request.platform = platform::resolve_platform(kRecordedOn, overrides);
   request.cores = cores;
   WorkRecording recording(cores);
   request.recording = &recording;
-  simulate(request, progress_);
-  work = std::make_unique<traces::WorkTrace>("recorded work",
-                                             recording.writer.finish(std::move(recording.info)));
-  return *work;
+  const RunResult run = simulate(request, progress_);
+  work.trace = std::make_unique<traces::WorkTrace>(
+      "recorded work", recording.writer.finish(std::move(recording.info)));
+  work.l1 = verdict_of_l1(run).occupied;
+  work.l2 = verdict_of_l2(run).occupied;
+  work.in_tiles =
+      std::any_of(run.passages.begin(), run.passages.end(), [&](const work::Passage& passage) {
+        const auto stage = std::find_if(run.stages.begin(), run.stages.end(),
+                                        [&](const auto& s) { return s.name == passage.stage; });
+        return stage != run.stages.end() && !stage->on_controller;
+      });
+  return work;
 }
 
 std::vector<Feasibility> FeasibilityStudy::on(const std::vector<FeasibilityPoint>& points,
@@ -130,7 +165,7 @@ std::vector<Feasibility> FeasibilityStudy::on(const std::vector<FeasibilityPoint
   for (std::size_t i = 0; i < points.size(); ++i) {
     rows[i].failure = points[i].failure;
     rows[i].platform = points[i].name;
-    may_fail(i, [&](const FeasibilityPoint& point) { work_among(point.cores); });
+    may_fail(i, [&](const FeasibilityPoint& point) { work_on(point); });
   }
   run_all(points.size(), options, [&](std::size_t i) {
     may_fail(i, [&](const FeasibilityPoint& point) { rows[i] = on(point); });
@@ -141,7 +176,8 @@ std::vector<Feasibility> FeasibilityStudy::on(const std::vector<FeasibilityPoint
 }
 
 Feasibility FeasibilityStudy::on(const FeasibilityPoint& point) {
-  const traces::WorkTrace& work = work_among(point.cores);
+  const Recorded& recorded = work_on(point);
+  const traces::WorkTrace& work = *recorded.trace;
   RunRequest request;
   request.platform = point.platform;
   request.cores = point.cores;
@@ -157,6 +193,8 @@ Feasibility FeasibilityStudy::on(const FeasibilityPoint& point) {
   add_times(leisurely, found);
   found.l1 = verdict_of_l1(leisurely);
   found.l2 = verdict_of_l2(leisurely);
+  found.in_tiles = recorded.in_tiles;
+  for (const L2Row& row : leisurely.external) found.external += row.bytes;
   const double period_ms =
       std::max(static_cast<double>(work.info().frame_period_ns) * 1e-6, found.frame_ms());
   const Seconds time(period_ms * 1e-3 * static_cast<double>(leisurely.frames.size()));

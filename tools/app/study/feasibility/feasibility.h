@@ -1,10 +1,10 @@
 // Whether a workload is feasible on a chip: how long its frames take, what they cost, and whether
 // it fits. The work is computed once, recorded, and timed on every chip (run/trace_source.h), so
 // all chips do the same work: what each frame and each optimisation of the recording did, whatever
-// the chip's speed would have changed. Memories have room for everything while it is timed; what
-// would not have fitted is part of the verdict.
-//
-// Left out: what a chip with less memory would store or copy elsewhere.
+// the chip's speed would have changed. For a chip with too little L1 or L2 it is computed once more
+// in memories of its sizes: the same poses, from what passes in tiles or lies in external memory.
+// Memories have room for everything while it is timed; what would not have fitted even so is part
+// of the verdict.
 #pragma once
 
 #include <map>
@@ -41,6 +41,8 @@ struct Feasibility {
   Hertz clock;  ///< of the cluster
   MemoryVerdict l1;
   MemoryVerdict l2;
+  bool in_tiles = false;    ///< blocks pass through L1
+  Bytes external;           ///< that lie in external memory
   double front_end_ms = 0;  ///< of a frame, mean; on a chip that has nothing else to do
   double worst_ms = 0;
   double optimiser_ms = 0;        ///< per frame
@@ -66,7 +68,7 @@ struct FeasibilityPoint {
 };
 
 /// Work of one workload over one flight, computed when it is first asked for and then kept, for
-/// each number of cores that it is divided among.
+/// each number of cores that it is divided among and for memories that are too small for it.
 class FeasibilityStudy {
  public:
   /// @param request  what to compute; its platform and cores are not used
@@ -80,11 +82,25 @@ class FeasibilityStudy {
                               const RunnerOptions& options);
 
  private:
-  const traces::WorkTrace& work_among(int cores);
+  /// Work as it was recorded.
+  struct Recorded {
+    std::unique_ptr<traces::WorkTrace> trace;
+    Bytes l1, l2;           ///< peaks
+    bool in_tiles = false;  ///< blocks pass through L1
+  };
+  /// Of the chip on which it is recorded; none of a size that the recording chip has anyway.
+  struct Memories {
+    int cores;
+    std::optional<Bytes> l1, l2, external;
+    auto operator<=>(const Memories&) const = default;
+  };
+
+  const Recorded& work_on(const FeasibilityPoint& point);
+  const Recorded& work_in(const Memories& memories);
 
   RunRequest request_;
   ProgressCallback progress_;
-  std::map<int, std::unique_ptr<traces::WorkTrace>> work_;
+  std::map<Memories, Recorded> work_;
 };
 
 }  // namespace leviosim::tools

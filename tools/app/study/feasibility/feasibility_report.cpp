@@ -53,7 +53,13 @@ std::string banded(const std::optional<sim::Estimate<Unit>>& e, double scale, in
 
 std::string memory_verdict(const Feasibility& row) {
   if (!row.failure.empty()) return row.failure;
-  if (row.fits()) return "fits";
+  if (row.fits()) {
+    std::string text = "fits";
+    if (row.in_tiles) text += ", in tiles through L1";
+    if (row.external > Bytes(0))
+      text += fmt::format(", {} kB in external memory", (row.external.count() + 999) / 1000);
+    return text;
+  }
   if (row.l1.fits()) return missing("L2", row.l2);
   if (row.l2.fits()) return missing("L1", row.l1);
   return missing("L1", row.l1) + "; " + missing("L2", row.l2);

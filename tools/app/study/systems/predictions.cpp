@@ -54,6 +54,7 @@ Prediction predict_levio(const PublishedSystem& system, const RunRequest& reques
                           ? here.power->value.count() / here.frame->value.count()
                           : here.most_frames_per_s;
   here.memory = memory_verdict(found);
+  here.fits = found.fits();
   return here;
 }
 

@@ -20,7 +20,8 @@ struct Prediction {
   double frames_per_s = 0;
   std::optional<sim::Estimate<Watts>> power;  ///< none if the platform has no energy figures
   std::optional<sim::Estimate<Joules>> frame;
-  std::string memory;  ///< "fits", or what is missing
+  std::string memory;  ///< how it fits, or what is missing
+  bool fits = true;
 };
 
 /// A workload on the chip of a system; of a system that is not modelled, what was published.

@@ -126,8 +126,10 @@ std::string systems_table(const std::vector<SystemRow>& rows) {
   for (const SystemRow& row : rows) {
     if (is_first(row))
       sources += fmt::format("  {}: {}\n", row.published.name, row.published.source);
-    if (row.here && row.here->memory != "fits")
+    if (row.here && !row.here->fits)
       small += fmt::format("{} as though it fitted: {}\n", model_of(row), row.here->memory);
+    else if (row.here && row.here->memory != "fits")
+      small += fmt::format("{}: {}\n", model_of(row), row.here->memory);
   }
   return terminal_text(table_of(table, rows)) +
          "published: of whole systems, as their authors define them; < is a bound\n"

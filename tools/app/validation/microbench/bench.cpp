@@ -120,7 +120,17 @@ sim::StageTiming Bench::run(const std::function<void(work::Machine&)>& body) {
 }
 
 double Bench::controller_seconds(const std::function<void(work::Machine&)>& body) {
-  const work::Job job = record(body);
+  throw_if_interrupted();
+  work::Machine machine({.cores = 1,
+                         .memory = "L2",
+                         .capacity = config_.l2.size,
+                         .record = true,
+                         .external = config_.controller.external.size});
+  {
+    const auto stage = machine.stage(kStage);
+    body(machine);
+  }
+  const work::Job job = machine.take_job();
   sim::Chip chip(config_, workers_);
   sim::JobTiming timing;
   const auto process = [&]() -> sim::Process { timing = co_await chip.control(job); };

@@ -285,7 +285,7 @@ template <int Bytes>
 double external_read(const sim::ChipConfig& chip, int) {
   return Bytes / (Bench(chip, 1).controller_seconds([](work::Machine& machine) {
            Buffers buffers(machine, Bytes);
-           machine.load_external(buffers.l1, buffers.l2);
+           machine.copy_in(buffers.l1, buffers.l2);
          }) * 1e6);
 }
 

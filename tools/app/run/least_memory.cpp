@@ -1,0 +1,54 @@
+#include "tools/app/run/least_memory.h"
+
+#include <algorithm>
+
+#include "sim/base/interruption.h"
+#include "sim/work/arena.h"
+#include "tools/app/run/feed.h"
+#include "tools/app/run/live_source.h"
+#include "tools/app/run/workload.h"
+#include "workload/vio/odometry/odometry.h"
+#include "workload/vio/parameters.h"
+
+namespace leviosim::tools {
+namespace {
+
+constexpr std::int64_t kKib = 1024;
+constexpr Bytes kMostL1{16 * kKib * kKib};
+constexpr Bytes kAnyL2{std::int64_t{1} << 28};
+
+/// @throws work::MemoryOverflow
+void fly_in(const RunRequest& request, const vio::Profile& profile, Bytes l1) {
+  Feed feed(request);
+  work::MachineConfig config = cluster_machine(request, profile.l1_alignment, l1);
+  config.record = false;
+  work::Machine cluster(config);
+  work::Machine controller({.cores = 1, .memory = "L2", .capacity = kAnyL2});
+  const auto odometry = vio::make_odometry(false, profile, feed.rig(), cluster, controller);
+  for (int i = 0; i < feed.size(); ++i) {
+    throw_if_interrupted();
+    const bool optimising = odometry->begin_optimisation();
+    odometry->process_frame(feed.frame(i));
+    for (int k = 0; optimising && k < profile.optimiser_iterations; ++k) odometry->optimise();
+    if (optimising) odometry->publish();
+  }
+}
+
+}  // namespace
+
+std::optional<Bytes> least_l1(const RunRequest& request, Bytes from) {
+  if (vio::other_profile(request.profile) != nullptr) return std::nullopt;
+  const vio::Profile profile = profile_of(request);
+  for (Bytes l1(from.count() / kKib * kKib + kKib); l1 <= kMostL1;) {
+    try {
+      fly_in(request, profile, l1);
+      return l1;
+    } catch (const work::MemoryOverflow& overflow) {
+      const std::int64_t missing = std::max<std::int64_t>(overflow.missing().count(), 1);
+      l1 += Bytes((missing + kKib - 1) / kKib * kKib);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace leviosim::tools
