@@ -92,6 +92,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/bin" "$work/outputs" "$work/folder"
 ln -s "$(realpath "$leviosim")" "$work/bin/leviosim"
+for script in tools/figures/*.py; do [[ ! -e $script ]] || ln -s "$(realpath "$script")" "$work/bin"; done
 if [[ -d $data/euroc ]]; then ln -s "$(realpath "$data/euroc")" "$work/folder/euroc"; fi
 
 # Runs a command once, however many figures show parts of what it prints; the name of its output.

@@ -150,7 +150,7 @@ cut 'table chip chip cores MHz "frame ms" worst published "optimiser ms" frames/
 figure feasibility-memory
 needs data
 shows 'leviosim platforms feasibility --data euroc/MH_01_easy_t05_t20'
-cut 'table chip chip cores memory | rows "[0-9]+.kB"'
+cut 'table chip chip cores memory | rows "[0-9]+.kB|in tiles"'
 
 figure accelerators
 needs data
@@ -267,6 +267,22 @@ needs data
 after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded
 leviosim run --platform gap9 --profile next --data euroc/MH_01_easy_t05_t20 --out other'
 shows 'leviosim eval recorded euroc/MH_01_easy_t05_t20 --also other --align posyaw'
+
+# platform_models/CHIPS.md
+figure l1-knee
+needs data
+shows 'cat >l1.yaml <<YAML
+base: { data: euroc/MH_01_easy_t05_t20, platform: gap9, frames: "0:100" }
+points:
+  - grid: { platform.cluster.l1.size: [32KiB, 48KiB, 64KiB, 96KiB, 128KiB, 256KiB], profile: levio }
+    list: [{ size: 160x120, workload.cell: 8 }, { size: 320x240, workload.cell: 16 }]
+  - grid: { platform.cluster.l1.size: [32KiB, 48KiB, 64KiB, 96KiB, 128KiB, 256KiB], profile: next }
+    list:
+      - { size: 160x120, workload.cell: 8 }
+      - { size: 320x240, workload.cell: 16, workload.features_per_cell: 3 }
+YAML
+leviosim sweep l1.yaml --out l1 && l1_knee.py l1/sweep.csv >knee.svg'
+keeps knee.svg
 
 # README.md
 figure timeline
