@@ -10,6 +10,8 @@ shift
 log=build/$preset.log
 mkdir -p build
 options=()
+# Once asked for, the engine of interactive pages is part of a build.
+if [[ -n ${LEVIOSIM_WASM:-} ]]; then options+=("-DLEVIOSIM_WASM=$LEVIOSIM_WASM"); fi
 if command -v ccache >/dev/null; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
 if [[ $* != leviosim ]]; then
   options+=(-DLEVIOSIM_BUILD_TESTS=ON)

@@ -3,7 +3,7 @@
 # network, where everything is there.
 #   tools/setup.sh          what the program needs
 #   tools/setup.sh tests    what its tests need, too: a browser for pages, references, benchmarks
-#   tools/setup.sh full     and other compilers, with their sanitizers, and what counts instructions
+#   tools/setup.sh full     and other compilers, with their sanitizers and for WebAssembly, and what counts instructions
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source tools/progress.sh
@@ -27,7 +27,9 @@ tests=(
   python3-pil                                                 # pictures, for tools/research
 )
 compilers=(clang libclang-rt-14-dev clang-tools  # tools/check_reproducible.sh; libFuzzer (tools/fuzz.sh); check_counting.py
-  valgrind)                                      # tools/ci/host_work.sh
+  valgrind                                       # tools/ci/host_work.sh
+  # The engine of interactive pages (preset wasm).
+  lld wasi-libc libc++-14-dev-wasm32 libclang-rt-14-dev-wasm32)
 case ${1:-program} in
   program) ;;
   tests) packages+=("${tests[@]}") ;;

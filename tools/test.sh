@@ -82,6 +82,7 @@ if [[ $kind == "" ]]; then
   tools/build.sh release leviosim leviosim_{sim,workload,platform_models,traces,tools,system}_tests
 else
   tools/setup.sh full
+  if [[ $kind == --full ]]; then export LEVIOSIM_WASM=ON; fi  # pages that compute
   tools/build.sh "$preset"
 fi
 check pages tools/check_pages.sh

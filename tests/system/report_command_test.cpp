@@ -60,6 +60,17 @@ TEST_F(Report, RefusesBeforeAnythingIsWritten) {
   EXPECT_FALSE(fs::exists(path("x.html")));
 }
 
+/// Without the engine, what has to be installed and built; with it, what the run lacks.
+TEST_F(Report, ThatComputesRefusesBeforeAnythingIsWritten) {
+  const ProgramResult refused =
+      program({"report", path(kEvilRun), "--interactive", "-o", path("x.html")});
+  if (refused.err.find("without the engine") != std::string::npos)
+    expect_refused(refused, {"libc++-14-dev-wasm32", "tools/build.sh wasm leviosim"});
+  else
+    expect_refused(refused, {"work.trace", "--record"});
+  EXPECT_FALSE(fs::exists(path("x.html")));
+}
+
 TEST_F(Report, RefusesAFolderThatLacksAColumn) {
   fs::copy(path("a"), path("old"));
   fs::remove(path("old/.leviosim-files"));

@@ -68,9 +68,11 @@ Arrows used_arrows(const fs::path& project, const Arrows& rooms, std::vector<std
       if (kind != ".h" && kind != ".cpp") continue;
       const fs::path file = fs::relative(entry.path(), project);
       const std::string folder = file.parent_path().string();
-      // What runs on the measured processor is built by a script; the others are the program, what others see
-      // of its library, and the Python module.
-      if (folder.rfind("tools/rv32", 0) == 0 || folder == "tools" || folder == "tools/python") continue;
+      // What runs on the measured processor is built by a script; the others are the program, what
+      // others see of its library, and the Python module.
+      if (folder.rfind("tools/rv32", 0) == 0 || folder == "tools" || folder == "tools/python" ||
+          folder == "tools/wasm")
+        continue;
       const std::string room = room_of(folder, rooms);
       if (rooms.count(room) == 0) {
         faults.push_back(file.string() + " is in no room");

@@ -5,6 +5,7 @@
 #include "tests/traces/test_folder.h"
 #include "tests/traces/work_trace_example.h"
 #include "traces/datasets/rng.h"
+#include "traces/work_traces/plain_file.h"
 
 namespace leviosim::traces {
 namespace {
@@ -83,6 +84,36 @@ TEST(WorkTrace, ReadersOfOneTraceDoNotMeet) {
   testing::expect_equal(frame, example_frame(0));
   ASSERT_TRUE(a.next(frame));
   testing::expect_equal(frame, example_frame(35));
+}
+
+TEST(WorkTrace, AReaderSkipsToAFrame) {
+  const WorkTrace trace("example", example_trace(70));
+  for (const int number : {0, 1, 31, 32, 40, 69}) {
+    WorkFrames reader(trace);
+    reader.skip_to(number);
+    WorkFrame frame;
+    for (int i = number; i < 70; ++i) {
+      ASSERT_TRUE(reader.next(frame));
+      testing::expect_equal(frame, example_frame(i));
+    }
+    EXPECT_FALSE(reader.next(frame));
+  }
+  WorkFrames beyond(trace);
+  beyond.skip_to(70);
+  WorkFrame frame;
+  EXPECT_FALSE(beyond.next(frame));
+}
+
+/// As interactive pages hold it: all that is compressed is plain, under checksums that are right.
+TEST(WorkTrace, IsWrittenWithoutCompression) {
+  const std::string packed = example_trace(40);
+  const std::string plain = plain_file(kWorkTraceFile, "t", packed, MemoryBudget(kTraceMemory));
+  std::vector<std::string> contents;
+  for (const Section& section : sections_of(kWorkTraceFile, "t", plain)) {
+    EXPECT_EQ(section.stored.size(), section.content_size);
+    contents.emplace_back(section.stored);
+  }
+  EXPECT_EQ(contents, contents_of(packed));
 }
 
 template <class Change>

@@ -4,12 +4,16 @@
 
 #include <memory>
 
+#include "sim/base/error.h"
 #include "sim/base/printable.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/cli/printout.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison.h"
 #include "tools/app/html_report/report_option.h"
+#include "tools/app/interactive/interactive_page.h"
 #include "tools/app/result/verdict.h"
+#include "tools/app/run/max_memory.h"
 #include "tools/commands/commands.h"
 
 namespace leviosim::tools {
@@ -20,11 +24,27 @@ struct ReportOptions {
   std::string out;
   std::string allow;
   bool force = false;
+  bool interactive = false;
+  std::string memory;
 };
+
+/// The page that computes, of one recorded run.
+void run_interactive(const ReportOptions& options) {
+  expect_engine();
+  if (options.runs.size() != 1)
+    throw InputError(
+        fmt::format("report --interactive: {} runs are given; expected one, with --record",
+                    options.runs.size()));
+  std::optional<outputs::OutputFile> file = claimed_report(
+      options.out, options.force, {options.runs.begin(), options.runs.end()}, "--out");
+  const std::string page = interactive_page(options.runs.front(), trace_memory(options.memory));
+  publish({{file, page, "report"}}, Printout(std::string()));
+}
 
 void run(const CLI::App& command, const ReportOptions& options) {
   require(command, "RUN", "one or more run folders");
   require(command, "--out", "the page to write, such as report.html");
+  if (options.interactive) return run_interactive(options);
   const Allowed allowed = parse_allowed(options.allow);
   std::optional<outputs::OutputFile> page = claimed_report(
       options.out, options.force, {options.runs.begin(), options.runs.end()}, "--out");
@@ -55,8 +75,12 @@ Command add_report_command(CLI::App& app, const Words&) {
   add("-o,--out", options->out, "FILE.html", "page to write");
   add("--allow", options->allow, "data,frames,profile,seed,size",
       "differences of the input that are intended");
+  command->add_flag("--interactive", options->interactive,
+                    "a page that computes, of one run with --record: sliders change the chip");
+  add_memory_option(*command, options->memory);
   command->add_flag("--force", options->force, "replace that file");
-  add_examples(*command, {"leviosim report recorded --out report.html"});
+  add_examples(*command, {"leviosim report recorded --out report.html",
+                          "leviosim report recorded --interactive --out whatif.html"});
   return {command, [=] { run(*command, *options); }};
 }
 

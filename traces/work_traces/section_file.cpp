@@ -1,32 +1,19 @@
 #include "traces/work_traces/section_file.h"
-#include "traces/work_traces/bytes.h"
 
 #include <fmt/core.h>
-#include <zlib.h>
-#include <zstd.h>
-#include <zstd_errors.h>
-
-#include <memory>
-#include <new>
 
 #include "sim/base/check.h"
 #include "sim/base/error.h"
+#include "traces/work_traces/bytes.h"
 
 namespace leviosim::traces {
 namespace {
-
-/// @param result  of a function of zstd
-void require_memory(std::size_t result) {
-  if (ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation) throw std::bad_alloc();
-}
 
 constexpr std::size_t kMagicSize = 8;
 constexpr std::size_t kCoveredHead = kMagicSize + 4;
 constexpr std::size_t kHeadSize = kCoveredHead + 4;
 constexpr std::size_t kSizes = 8;
 constexpr std::size_t kSectionHead = kSizes + 4;
-/// No section of ours comes near; what a damaged or hostile file claims is not allocated.
-constexpr std::size_t kLargestContent = std::size_t{1} << 28;
 
 [[noreturn]] void fail(const std::string& file, std::size_t offset, std::string_view message) {
   throw InputError(fmt::format("{}, byte {}: {}", file, offset, message));
@@ -50,14 +37,6 @@ void check_head(const FileKind& kind, const std::string& file, std::string_view 
 
 }  // namespace
 
-std::uint32_t crc_of(std::string_view a, std::string_view b) {
-  uLong crc = 0;
-  for (const std::string_view bytes : {a, b})
-    if (!bytes.empty())  // zlib takes a null pointer for the wish to begin anew
-      crc = crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-  return static_cast<std::uint32_t>(crc);
-}
-
 std::string file_head(const FileKind& kind) {
   check_equal(kind.magic.size(), kMagicSize, "bytes that name a kind of file");
   ByteWriter head;
@@ -65,22 +44,6 @@ std::string file_head(const FileKind& kind) {
   head.u32(kind.version);
   head.u32(crc_of(head.bytes()));
   return head.take();
-}
-
-std::string packed_section(std::string_view content, int level) {
-  check(content.size() <= kLargestContent, "a section is too large");
-  std::string stored(ZSTD_compressBound(content.size()), '\0');
-  const std::size_t size =
-      ZSTD_compress(stored.data(), stored.size(), content.data(), content.size(), level);
-  require_memory(size);
-  check(!ZSTD_isError(size), "zstd compresses");
-  stored.resize(size);
-  ByteWriter section;
-  section.u32(static_cast<std::uint32_t>(stored.size()));
-  section.u32(static_cast<std::uint32_t>(content.size()));
-  section.u32(crc_of(section.bytes(), stored));
-  section.append(stored);
-  return section.take();
 }
 
 std::vector<Section> sections_of(const FileKind& kind, const std::string& file,
@@ -105,37 +68,13 @@ std::vector<Section> sections_of(const FileKind& kind, const std::string& file,
            fmt::format("the section of {} bytes that begins here does not match its checksum: the "
                        "file is damaged",
                        stored + kSectionHead));
-    if (content > kLargestContent)
+    if (content > kLargestSection)
       fail(file, at,
-           fmt::format("a section of {} bytes; expected {} at most", content, kLargestContent));
+           fmt::format("a section of {} bytes; expected {} at most", content, kLargestSection));
     sections.push_back({at, payload, content});
     at += kSectionHead + stored;
   }
   return sections;
-}
-
-std::string unpacked(const Section& section, const std::string& file, MemoryBudget& budget) {
-  const std::size_t expected = section.content_size;
-  // What the frame itself says is its size comes first: a lie about it costs nothing.
-  const unsigned long long stated =
-      ZSTD_getFrameContentSize(section.stored.data(), section.stored.size());
-  if (stated != ZSTD_CONTENTSIZE_UNKNOWN && stated != ZSTD_CONTENTSIZE_ERROR && stated != expected)
-    fail(file, section.offset,
-         fmt::format("the section holds {} bytes; expected {}", stated, expected));
-  if (!budget.take(expected))
-    fail(file, section.offset, budget.refusal("the content of the section", expected));
-  std::string content(expected, '\0');
-  const std::size_t size =
-      ZSTD_decompress(content.data(), content.size(), section.stored.data(), section.stored.size());
-  require_memory(size);
-  if (ZSTD_isError(size))
-    fail(file, section.offset,
-         fmt::format("the section is no zstd frame of {} bytes: {}", expected,
-                     ZSTD_getErrorName(size)));
-  if (size != expected)
-    fail(file, section.offset,
-         fmt::format("the section holds {} bytes; expected {}", size, expected));
-  return content;
 }
 
 std::uint64_t ByteReader::fixed(int size, const char* what) {

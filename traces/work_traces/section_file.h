@@ -20,6 +20,9 @@
 
 namespace leviosim::traces {
 
+/// No section of ours comes near; what a damaged or hostile file claims is not allocated. [bytes]
+inline constexpr std::size_t kLargestSection = std::size_t{1} << 28;
+
 struct FileKind {
   std::string_view magic;  ///< 8 bytes
   const char* name;        ///< "a work trace"

@@ -42,6 +42,15 @@ bool WorkFrames::next(WorkFrame& frame) {
   return true;
 }
 
+void WorkFrames::skip_to(int frame) {
+  const std::vector<WorkTrace::Chunk>& chunks = trace_->chunks();
+  while (next_chunk_ + 1 < chunks.size() && chunks[next_chunk_ + 1].first <= frame) ++next_chunk_;
+  if (next_chunk_ < chunks.size()) frame_ = chunks[next_chunk_].first;
+  WorkFrame before;
+  while (frame_ < frame && next(before)) {
+  }
+}
+
 void WorkFrames::read_iterations(WorkFrame& frame) {
   const std::uint64_t before = budget_.used();
   frame.iterations.resize(frame.optimised ? text_.count("iterations of the optimiser", kJobMemory)

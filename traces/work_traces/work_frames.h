@@ -83,6 +83,8 @@ class WorkFrames {
   /// The next frame; storage of `frame` is used again. False at the end.
   /// @throws InputError for what cannot have been recorded
   bool next(WorkFrame& frame);
+  /// Of a new reader: the next frame is this one. Frames before its chunk are not read.
+  void skip_to(int frame);
 
  private:
   void open_chunk(WorkFrame& frame);

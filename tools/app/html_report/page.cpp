@@ -19,20 +19,19 @@ std::string_view part(std::string_view name) {
 }
 
 /// In the order in which they use each other.
-std::string scripts() {
+std::string scripts(std::initializer_list<const char*> names) {
   std::string text;
-  for (const char* name :
-       {"dom", "table", "charting", "figures", "frames", "stages", "memory", "energy", "trajectory",
-        "runs", "compare", "check", "study", "history", "main"})
-    text += part(name);
+  for (const char* name : names) text += part(name);
   return text;
 }
 
 /// What the template has in place of a field such as "{{title}}".
-std::string content(std::string_view field, const Json& data) {
+std::string content(std::string_view field, const Json& data, const PageScripts& page) {
   if (field == "title") return escape_markup(data.at("title").get<std::string>());
   if (field == "data") return script_json(data);
-  if (field == "scripts") return scripts();
+  if (field == "scripts") return page.scripts;
+  if (field == "blocks") return page.blocks;
+  if (field == "policy") return page.policy;
   if (field == "licence") return escape_markup(part("copyright"));
   return std::string(part(field));
 }
@@ -49,13 +48,21 @@ Json report_json(const std::string& title, Json runs) {
 }
 
 std::string html_page(const Json& data) {
+  return html_page(data, {scripts({"frames", "stages", "memory", "energy", "trajectory", "runs",
+                                   "compare", "check", "study", "history", "main"}),
+                          "", ""});
+}
+
+std::string html_page(const Json& data, const PageScripts& others) {
+  PageScripts with_shared = others;
+  with_shared.scripts = scripts({"dom", "table", "charting", "figures"}) + others.scripts;
   std::string page;
   std::string_view rest = part("template");
   for (std::size_t begin = rest.find("{{"); begin != std::string_view::npos;
        begin = rest.find("{{")) {
     const std::size_t end = rest.find("}}", begin);
     page += rest.substr(0, begin);
-    page += content(rest.substr(begin + 2, end - begin - 2), data);
+    page += content(rest.substr(begin + 2, end - begin - 2), data, with_shared);
     rest.remove_prefix(end + 2);
   }
   page += rest;

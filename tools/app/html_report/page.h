@@ -13,8 +13,16 @@ namespace leviosim::tools {
 /// some, "comparisons", "check", "study".
 Json report_json(const std::string& title, Json runs);
 
+/// A page of other scripts than those that show runs.
+struct PageScripts {
+  std::string scripts;  ///< after those for elements, tables, charts and figures
+  std::string blocks;   ///< inert elements before them, with what they read
+  std::string policy;   ///< what they may do besides, in the words of Content-Security-Policy
+};
+
 /// The file. @param data  of report_json()
 std::string html_page(const Json& data);
+std::string html_page(const Json& data, const PageScripts& others);
 
 /// JSON that may stand in a <script>: no text of it can end the element.
 std::string script_json(const Json& json);

@@ -63,31 +63,32 @@ const work::Job& TraceSource::process(FrameResult& result) {
   for (std::size_t i = 0; i < facts_.size(); ++i)
     if (facts_[i] != nullptr) result.*facts_[i]->of = frame_.facts[i];
   result.pose = {frame_.t_ns, frame_.T_world_body};
-  check_fits(frame_.front_end, "L1", l1_);
+  check_fits(trace_, number_, frame_.front_end, "L1", l1_);
   return frame_.front_end;
 }
 
 const work::Job& TraceSource::optimise() {
   const work::Job& job = iterations_.at(next_iteration_++);
-  check_fits(job, "L2", l2_);
+  check_fits(trace_, number_, job, "L2", l2_);
   return job;
 }
 
-void TraceSource::check_fits(const work::Job& job, const char* memory, Bytes size) const {
+void check_fits(const traces::WorkTrace& trace, int frame, const work::Job& job, const char* memory,
+                Bytes size) {
   for (const work::StageRun& stage : job.stages)
     if (stage.memory.parallel > size)
       throw work::MemoryOverflow(
           fmt::format("{}: frame {}, {}: the recorded work occupies {} bytes of {}, which has {}: "
                       "{} bytes are missing; a larger {} has them",
-                      trace_.name(), number_, stage.stage, stage.memory.parallel.count(), memory,
+                      trace.name(), frame, stage.stage, stage.memory.parallel.count(), memory,
                       size.count(), (stage.memory.parallel - size).count(),
                       std::string_view(memory) == "L2" ? "l2.size" : "cluster.l1.size"),
           memory);
 }
 
-std::vector<StageResult> TraceSource::empty_stages() const {
+std::vector<StageResult> stages_of(const traces::WorkTrace& trace) {
   std::vector<StageResult> stages;
-  for (const traces::WorkTraceInfo::Stage& recorded : trace_.info().stages) {
+  for (const traces::WorkTraceInfo::Stage& recorded : trace.info().stages) {
     StageResult stage;
     stage.name = recorded.name;
     stage.unit = recorded.unit;

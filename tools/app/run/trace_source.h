@@ -32,6 +32,9 @@ struct FrameComparison {
   bool computes_the_same() const { return !sees_another_result() && !optimiser_differs(); }
 };
 
+/// RunSource::empty_stages() of recorded work.
+std::vector<StageResult> stages_of(const traces::WorkTrace& trace);
+
 class TraceSource : public RunSource {
  public:
   /// @param trace  outlives the source and all names in what it gives
@@ -52,15 +55,13 @@ class TraceSource : public RunSource {
   /// @throws InputError naming the stage if it does not fit in L2
   const work::Job& optimise() override;
   void publish() override {}
-  std::vector<StageResult> empty_stages() const override;
+  std::vector<StageResult> empty_stages() const override { return stages_of(trace_); }
   void describe(RunResult& result) const override;
 
   /// Of the frames so far.
   const std::vector<FrameComparison>& comparisons() const { return comparisons_; }
 
  private:
-  void check_fits(const work::Job& job, const char* memory, Bytes size) const;
-
   const traces::WorkTrace& trace_;
   Bytes l1_;
   Bytes l2_;
@@ -72,6 +73,11 @@ class TraceSource : public RunSource {
   std::size_t next_iteration_ = 0;
   std::vector<FrameComparison> comparisons_;
 };
+
+/// @param memory  "L1" or "L2"
+/// @throws work::MemoryOverflow naming the frame and the stage whose recorded work does not fit
+void check_fits(const traces::WorkTrace& trace, int frame, const work::Job& job, const char* memory,
+                Bytes size);
 
 /// RunSource::describe() of recorded work.
 void describe_recording(const traces::WorkTrace& trace, RunResult& result);

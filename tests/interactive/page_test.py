@@ -1,0 +1,214 @@
+"""Interactive pages against the command: the engine in WebAssembly, in headless Chromium, gives every
+statistic of 50 settings as `leviosim replay` does, bit for bit, and the page answers with them.
+
+    page_test.py LEVIOSIM        exit status 77 where the engine or the browser is missing
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from browser import BROWSER, Page
+
+LEVIOSIM = ""
+# Two or three values of each resource, pairs of them, and accelerators; cores are as recorded.
+SINGLE = {
+    "cluster.fpu.units": ["1", "2", "8"], "cluster.fpu.dividers": ["2", "4"],
+    "cluster.fpu.mapping": ["dynamic"], "cluster.fpu.int64_units": ["1"],
+    "cluster.l1.banks": ["4", "8", "32"], "cluster.l1.size": ["160KiB", "256KiB"],
+    "cluster.icache.size": ["0B", "256B", "1KiB", "4KiB"],
+    "cluster.icache.shared_size": ["1KiB", "8KiB", "64KiB"],
+    "cluster.icache.shared_miss": ["12", "24"], "cluster.icache.refill_width": ["4", "16"],
+    "cluster.icache.refills": ["1", "8"], "cluster.icache.master_size": ["512B"],
+    "cluster.dma.bytes_per_cycle": ["4", "32"], "cluster.dma.first_data": ["30"],
+    "cluster.events.offload": ["1500"], "cluster.events.barrier": ["12"],
+    "cluster.events.fork_master": ["40"], "cluster.l1.stream_conflicts": ["0"],
+    "cluster.fpu.collisions": ["0"], "isa.ops.load_l2.stall": ["7"],
+    "cluster.clock": ["100MHz", "240MHz", "333MHz"], "controller.clock": ["50MHz", "123MHz"],
+    "controller.icache.size": ["4KiB"], "l2.size": ["2MiB"], "isa.ops.popcount.issue": ["4"],
+    "energy.core.instruction": ["7pJ"],
+}
+TOGETHER = [
+    ["cluster.clock=240MHz", "controller.clock=240MHz", "supply.voltage=0.65V"],
+    ["cluster.fpu.units=1", "cluster.fpu.dividers=4"],
+    ["cluster.icache.shared_size=8KiB", "cluster.icache.size=1KiB", "cluster.clock=200MHz"],
+    ["cluster.l1.banks=8", "cluster.dma.bytes_per_cycle=4"],
+    ["cluster.fpu.units=8", "cluster.l1.banks=64", "cluster.icache.shared_size=16KiB",
+     "cluster.icache.refill_width=32", "controller.clock=185MHz"],
+]
+WANTED = 50
+
+
+def program(*words, status=0):
+    done = subprocess.run([LEVIOSIM, *words], capture_output=True, text=True)
+    if done.returncode != status:
+        raise AssertionError(f"{words}: {done.stderr}")
+    return done
+
+
+def is_band(name):
+    """Of a time: the page leaves bands of times out. Those of energy and area it has."""
+    return name.endswith((".low", ".high")) and not name.startswith(("energy.", "area."))
+
+
+class InteractivePage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.runs = {}
+        for profile, seconds in (("next", "3"), ("levio", "1")):
+            data = cls.path("flight-" + profile)
+            program("synth", "--out", data, "--duration", seconds)
+            program("run", "--profile", profile, "--data", data, "--record", "--quiet",
+                    "--out", cls.path(profile))
+            program("report", cls.path(profile), "--interactive", "-o", cls.page(profile))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.folder.name, name)
+
+    @classmethod
+    def page(cls, name):
+        return cls.path(name + ".html")
+
+    def opened(self, profile, fragment="", **look):
+        page = Page(f"file://{self.page(profile)}#{fragment}", **look)
+        self.addCleanup(page.__exit__)
+        page.wait("document.body.dataset.ready")
+        return page
+
+    def settings(self, page):
+        lists = [[f"{path}={value}"] for path, values in SINGLE.items() for value in values]
+        lists += TOGETHER + [one["settings"] for one in page.run("window.page.data.switches")]
+        return lists
+
+    def compare(self, page, profile, lines):
+        script = f"""(() => {{ const e = window.page.engine; e.set({json.dumps(lines)});
+                     const all = e.flight(true).statistics, some = e.flight().statistics;
+                     return {{all, some}}; }})()"""
+        seen = page.run(script)
+        overrides = [word for line in lines for word in ("-p", line)]
+        out = self.path("replayed")
+        program("replay", self.path(profile), *overrides, "--out", out, "--force", "--quiet")
+        with open(os.path.join(out, "run.json"), encoding="utf-8") as file:
+            expected = {name: value[0] for name, value in json.load(file)["statistics"].items()
+                        if not is_band(name)}
+        for name, value in expected.items():
+            self.assertIn(name, seen["all"], lines)
+            # Both print the shortest decimal that reads back as the number: equal numbers, equal bytes.
+            self.assertEqual(seen["all"][name], value, f"{name} with {lines}")
+        self.assertEqual(set(seen["all"]), set(expected))
+        for name, value in seen["some"].items():
+            if "single" not in name:
+                self.assertEqual(value, expected[name], f"{name} with {lines}")
+
+    def test_statistics_equal_the_command_for_fifty_settings(self):
+        page = self.opened("next")
+        settings = self.settings(page)
+        self.assertGreaterEqual(len(settings), WANTED)
+        for lines in settings:
+            self.compare(page, "next", lines)
+        page = self.opened("levio")
+        for lines in settings[::10]:
+            self.compare(page, "levio", lines)
+
+    def test_what_cannot_run_is_refused_in_the_words_of_the_command(self):
+        page = self.opened("next")
+        for line in ("cluster.fpu.unit=2", "cluster.l1.banks=3", "cluster.workers=4",
+                     "cluster.clock=9GHz", "supply.voltage=0.7V", "cluster.fpu.units=2parrots"):
+            words = page.run(f"""(() => {{ try {{ window.page.engine.set([{json.dumps(line)}]); }}
+                             catch (error) {{ return error.message; }} return ''; }})()""")
+            refused = program("replay", self.path("next"), "-p", line, "--out", self.path("none"),
+                              status=2).stderr
+            self.assertTrue(words, line)
+            # Names of files differ.
+            self.assertIn(words.replace("the recording", "").split(":")[-1].strip()[:40], refused)
+        # And the engine goes on.
+        self.compare(page, "next", ["cluster.fpu.units=2"])
+
+    def test_work_that_does_not_fit_is_refused_with_its_stage(self):
+        page = self.opened("next")
+        failure = page.run("""(() => { const e = window.page.engine; e.set(['cluster.l1.size=32KiB']);
+            try { e.flight(); } catch (error) { return error.message; } return ''; })()""")
+        self.assertIn("bytes of L1", failure)
+        self.assertIn("bytes of L1", page.run(
+            "window.page.knobs.nodes.map((n) => n.textContent).join(), "
+            "[...document.querySelectorAll('.marks i.cannot')].map((i) => i.title).join()"))
+        self.compare(page, "next", [])
+
+    def test_a_faster_camera_moves_the_deadline_alone(self):
+        page = self.opened("next")
+        counts = page.run("""(() => { const e = window.page.engine;
+            const at = (lines) => { e.set(lines); return e.flight().statistics; };
+            return [at([]), at(['fps=200']), at([`fps=${window.page.setting.recordedRate}`])]; })()""")
+        recorded, fast, same = counts
+        self.assertEqual(recorded, same)
+        self.assertEqual(fast["run.frame_period"], 5_000_000)
+        self.assertEqual(fast["frame.cycles.parallel.mean"], recorded["frame.cycles.parallel.mean"])
+        # Instants are whole nanoseconds, at other places of the time line.
+        self.assertLess(abs(fast["frame.time.mean"] - recorded["frame.time.mean"]), 1)
+        self.assertGreater(fast["frames.waited"], recorded["frames.waited"])
+
+    def test_the_address_keeps_the_setting_and_the_command_repeats_it(self):
+        page = self.opened("next", "cluster.fpu.units=2&cluster.l1.banks=8&frame=7")
+        self.assertEqual(page.run("window.page.setting.lines()"),
+                         ["cluster.fpu.units=2", "cluster.l1.banks=8"])
+        self.assertIn("frame=7", page.run("location.hash"))
+        command = page.run("window.page.setting.command()").split()
+        self.assertEqual(command[:2], ["leviosim", "whatif"])
+        rows = json.loads(program(*command[1:], "--json", "--quiet").stdout)
+        self.assertIn("cluster.fpu.units=2", json.dumps(rows))
+        shown = page.run("document.querySelector('.tiles').textContent")
+        mean = page.run("window.page.now.statistics['frame.time.mean']")
+        self.assertIn(f"{mean / 1e6:.4g}", shown)
+
+    def test_a_setting_that_cannot_run_says_so_and_the_page_goes_on(self):
+        page = self.opened("next", "cluster.l1.size=16KiB")
+        self.assertIn("Cannot run", page.run("document.querySelector('[role=alert]').textContent"))
+        self.assertEqual(page.complaints, [])
+        page.run("delete document.body.dataset.ready; window.page.back()")
+        page.wait("document.body.dataset.ready")
+        self.assertEqual(page.run("document.querySelector('[role=alert]').textContent"), "")
+
+    def test_moving_a_slider_by_the_keyboard_changes_the_answer(self):
+        page = self.opened("next")
+        before = page.run("document.querySelector('.tiles').textContent")
+        page.run("delete document.body.dataset.ready; document.getElementById('knob-0').focus()")
+        page.ask("Input.dispatchKeyEvent", type="keyDown", key="Home", code="Home",
+                 windowsVirtualKeyCode=36)
+        page.wait("document.body.dataset.ready")
+        after = page.run("document.querySelector('.tiles').textContent")
+        self.assertNotEqual(before, after)
+        self.assertIn("cluster.clock", page.run("location.hash"))
+
+    def test_it_is_drawn_without_errors_requests_or_overflow(self):
+        for width in (1280, 390):
+            for dark in (False, True):
+                with self.subTest(width=width, dark=dark):
+                    page = self.opened("levio", "cluster.fpu.units=1", width=width, dark=dark)
+                    self.assertEqual(page.complaints, [])
+                    self.assertLessEqual(page.run("document.documentElement.scrollWidth"), width)
+                    self.assertEqual(page.run("document.querySelectorAll('canvas').length"), 2)
+                    self.assertEqual(page.run("document.querySelectorAll('.verdict').length"), 1)
+                    ink = page.run("getComputedStyle(document.documentElement).getPropertyValue('--ink').trim()")
+                    self.assertEqual(ink, "#e4e9ef" if dark else "#1b2430")
+
+
+if __name__ == "__main__":
+    LEVIOSIM = sys.argv.pop(1)
+    if not os.path.exists(BROWSER):
+        print(f"skipped: {BROWSER} is not installed (package chromium)")
+        sys.exit(77)
+    asked = subprocess.run([LEVIOSIM, "report", "none", "--interactive", "-o", "none.html"],
+                           capture_output=True, text=True)
+    if "built without the engine" in asked.stderr:
+        print("skipped: " + asked.stderr.strip())
+        sys.exit(77)
+    unittest.main()

@@ -1,0 +1,74 @@
+// What the sliders and switches say, as lines for the engine, as a command, and in the address of
+// the page, which keeps it.
+
+class Setting {
+  /** @param data  of the page: knobs, switches, run, period_ns */
+  constructor(data) {
+    this.data = data;
+    this.frame = 0;
+    this.reset();
+  }
+
+  reset() {
+    this.at = this.data.knobs.map((knob) => knob.recorded);
+    this.on = this.data.switches.map(() => false);
+    this.rate = null;  // of the camera; null: as recorded
+  }
+
+  get recordedRate() {
+    return 1e9 / this.data.period_ns;
+  }
+  get isRecorded() {
+    return this.lines().length === 0;
+  }
+
+  /** Settings of the chip as -p takes them. @param other  {knob: [index, value], switch: index} */
+  chipLines(other = {}) {
+    const lines = this.data.knobs.flatMap((knob, i) => {
+      const at = other.knob && other.knob[0] === i ? other.knob[1] : this.at[i];
+      return at === knob.recorded ? [] : [`${knob.path}=${knob.values[at]}`];
+    });
+    this.data.switches.forEach((one, i) => {
+      if (this.on[i] || other.switch === i) lines.push(...one.settings);
+    });
+    return lines;
+  }
+
+  lines(other = {}) {
+    return [...this.chipLines(other), ...(this.rate === null ? [] : [`fps=${this.rate}`])];
+  }
+
+  command() {
+    const chip = this.chipLines();
+    return ['leviosim whatif', this.data.run, ...(chip.length > 0 ? [chip.join(',')] : [])].join(
+        ' ');
+  }
+
+  fragment() {
+    const parts = new URLSearchParams();
+    this.data.knobs.forEach((knob, i) => {
+      if (this.at[i] !== knob.recorded) parts.set(knob.path, knob.values[this.at[i]]);
+    });
+    this.data.switches.forEach((one, i) => {
+      if (this.on[i]) parts.set(one.name, 'on');
+    });
+    if (this.rate !== null) parts.set('fps', this.rate);
+    parts.set('frame', this.frame);
+    return parts.toString();
+  }
+
+  /** What an address does not say, or says wrongly, stays as recorded. */
+  read(fragment) {
+    const parts = new URLSearchParams(fragment);
+    this.reset();
+    this.data.knobs.forEach((knob, i) => {
+      const at = knob.values.indexOf(parts.get(knob.path));
+      if (at >= 0) this.at[i] = at;
+    });
+    this.on = this.data.switches.map((one) => parts.get(one.name) === 'on');
+    const rate = Number(parts.get('fps'));
+    if (rate >= 1 && rate <= 1000) this.rate = rate;
+    const frame = Number(parts.get('frame') ?? NaN);
+    if (Number.isInteger(frame) && frame >= 0 && frame < this.data.frames) this.frame = frame;
+  }
+}
