@@ -53,7 +53,7 @@ constexpr std::size_t index(Mechanism mechanism) { return static_cast<std::size_
 struct MechanismInfo {
   Mechanism mechanism;
   std::string_view key;     ///< in files and statistics
-  std::string_view column;  ///< of the table of breakdowns, which it is added to; empty: of none
+  std::string_view column;  ///< of tables and charts, which it is added to; empty: of none
   std::string_view wait;    ///< what the core waits for while it works; empty: for nothing
   std::string_view meaning;
   bool sleeps = false;  ///< its cores wait for an event, with their clocks off
@@ -71,18 +71,17 @@ inline constexpr std::array kMechanisms{
     MechanismInfo{Mechanism::Fpu, "fpu", "FPU", "FPU", "waiting for a shared FPU"},
     MechanismInfo{Mechanism::Divider, "divider", "divider", "divider",
                   "waiting for the shared divider"},
-    MechanismInfo{Mechanism::Banks, "banks", "banks", "L1 banks", "waiting for L1 banks"},
-    MechanismInfo{Mechanism::Fetch, "fetch", "I-cache", "code",
-                  "I-cache: code that the private cache lacks"},
-    MechanismInfo{Mechanism::FetchContention, "fetch_contention", "I-cache", "code",
-                  "I-cache: contention with the fetches of other cores"},
-    MechanismInfo{Mechanism::Imbalance, "imbalance", "imbalance", "",
+    MechanismInfo{Mechanism::Banks, "banks", "L1 banks", "L1 banks", "waiting for L1 banks"},
+    MechanismInfo{Mechanism::Fetch, "fetch", "code", "code", "waiting for code"},
+    MechanismInfo{Mechanism::FetchContention, "fetch_contention", "code", "code",
+                  "waiting for code while others fetch"},
+    MechanismInfo{Mechanism::Imbalance, "imbalance", "slowest core", "",
                   "waiting for the slowest core", true},
     MechanismInfo{Mechanism::Synchronisation, "synchronisation", "sync", "",
                   "forking, waking up, barriers", true},
-    MechanismInfo{Mechanism::Transfer, "transfer", "transfer", "", "waiting for the DMA", true},
+    MechanismInfo{Mechanism::Transfer, "transfer", "DMA", "", "waiting for the DMA", true},
     MechanismInfo{Mechanism::Serial, "serial", "serial", "", "the master works alone", true},
-    MechanismInfo{Mechanism::Rounding, "rounding", "imbalance", "", "ends moved to clock edges"},
+    MechanismInfo{Mechanism::Rounding, "rounding", "slowest core", "", "ends moved to clock edges"},
     MechanismInfo{Mechanism::Accelerator, "accelerator", "served", "accelerator",
                   "accelerators serving the core"},
     MechanismInfo{Mechanism::AcceleratorContention, "accelerator_contention", "queue",

@@ -137,7 +137,12 @@ TEST_F(BenchmarkOfFewFrames, GoesOnWhereItWasAndDrawsNothingTwice) {
   const auto files = contents(folder_ / "more");
   for (const char* name : {"runs.csv", "pieces.csv", "rows.csv", "table.md", "manifest.json"})
     EXPECT_TRUE(files.count(name)) << name;
-  EXPECT_NE(read_text_file(folder_ / "page.html").find("ate_percent"), std::string::npos);
+  const std::string page = read_text_file(folder_ / "page.html");
+  const std::string data = page.substr(page.find("id=\"data\">"));
+  for (const char* part : {"ate_percent", "\"title\":\"Flights: plan\"", "\"mark\":\"Answer\"",
+                           "\"found\":[{\"title\":\"Each profile on each set of flights\""})
+    EXPECT_NE(data.find(part), std::string::npos) << part;
+  EXPECT_EQ(data.find("───"), std::string::npos) << "a table as text";
 
   // What is finished needs no pictures.
   fs::remove_all(folder_ / "cache/leviosim/rendered");

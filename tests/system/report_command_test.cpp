@@ -37,6 +37,14 @@ class Report : public tests::ProgramSuite {
     expect_done({"run", "--platform", "gap9", "-p", "cluster.fpu.units=1", "--data", path("flight"),
                  "--out", path(kEvilRun), "--quiet"});
   }
+
+  /// What a page draws.
+  static Json data_of(const std::string& page) {
+    const std::string html = base::read_text_file(path(page));
+    constexpr std::string_view kBegin = "id=\"data\">";
+    const std::size_t begin = html.find(kBegin) + kBegin.size();
+    return Json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+  }
 };
 
 TEST_F(Report, OfAFolderIsThatOfTheRunItself) {
@@ -175,15 +183,11 @@ class InBrowser : public Report {
           .filter((v) => v).length, 0),
       untrusted: chartsOf("map").flatMap((c) => c.data.datasets.filter((d) => d.yAxisID === "map"))
         .flatMap((d) => d.data.map((v, i) => v ? `${i} ${d.label}` : null)).filter((v) => v),
-      alike: chartsOf("").some((c) => {
-        const names = new Map();
-        return c.data.datasets.some((d) => {
-          if (typeof d.backgroundColor !== "string" || d.silent) return false;
-          const colour = d.stack + d.backgroundColor, other = names.get(colour) ?? d.label;
-          names.set(colour, d.label);
-          return other !== d.label;
-        });
-      }),
+      alike: [...chartsOf("").filter((c) => c.data.datasets.length > 1).flatMap((c) => c.data.datasets)
+        .filter((d) => typeof d.backgroundColor === "string" && !d.silent && !d.legendLine)
+        .reduce((names, d) => names.set(d.backgroundColor,
+            (names.get(d.backgroundColor) || new Set()).add(d.label)), new Map())]
+        .filter(([, names]) => names.size > 1).map(([colour, names]) => [colour, ...names].join(" ")),
       cut: [...document.querySelectorAll("section[id^=difference] .scroll.whole")]
         .some((s) => s.scrollWidth > s.clientWidth),
       ink: getComputedStyle(document.documentElement).getPropertyValue("--ink").trim()}, "*"));
@@ -245,7 +249,7 @@ class InBrowser : public Report {
     EXPECT_EQ(page["evil"], false);
     EXPECT_EQ(page["colours"], true);
     EXPECT_EQ(page["unnamed"], 0) << "frames without a colour that says where from";
-    EXPECT_EQ(page["alike"], false) << "two names in one colour";
+    EXPECT_EQ(page["alike"], Json::array()) << "two names in one colour, on all charts";
     EXPECT_EQ(page["ink"], dark ? "#e4e9ef" : "#1b2430");
   }
 };
@@ -254,7 +258,7 @@ TEST_F(InBrowser, APageOfARunIsDrawnWithoutErrorsRequestsOrOverflow) { expect_fi
 
 TEST_F(InBrowser, APageOfSeveralRunsIsToo) {
   expect_done({"report", path("a"), path(kEvilRun), "-o", path("both.html")});
-  expect_fine("both.html");
+  expect_fine("both.html", 2);
 }
 
 TEST_F(InBrowser, APageOfAnEvaluationIsToo) {
@@ -280,6 +284,39 @@ TEST_F(InBrowser, APageOfStagesWithNamesOfScriptsIsToo) {
   }
   expect_done({"report", path("names"), "-o", path("names.html")});
   expect_fine("names.html");
+}
+
+TEST_F(InBrowser, APageOfSensitivityIsToo) {
+  expect_done({"sensitivity", "--data", path("flight"), "--frames", "0:4", "--quiet", "--report",
+               path("sensitivity.html")});
+  expect_fine("sensitivity.html");
+}
+
+/// One of a command on two chips names its columns by the change, and begins with the time.
+TEST_F(InBrowser, APageOfAChangedChipIsToo) {
+  expect_done({"compare", path("a"), "-p", "cluster.clock=240MHz", "--quiet", "--report",
+               path("changed.html")});
+  expect_fine("changed.html", 2);
+  const Json data = data_of("changed.html");
+  EXPECT_EQ(data["runs"][1]["name"], "cluster.clock=240MHz");
+  EXPECT_EQ(data["comparisons"][0]["figures"][0]["name"], "frame time, mean");
+  EXPECT_NE(data["comparisons"][0]["why"][0]["text"].get<std::string>().find("another clock +"),
+            std::string::npos);
+}
+
+/// What is waited for is no part of the time that a frame takes; a chip that is too slow has both.
+TEST_F(Report, TellsOwnTimeFromTheQueue) {
+  expect_done({"replay", path("a"), "-p", "cluster.clock=100MHz", "--quiet", "--report",
+               path("slow.html"), "--out", path("slow")});
+  const Json run = data_of("slow.html")["runs"][0];
+  EXPECT_NE(run["verdict"]["why"].get<std::string>().find(" of its own, after "),
+            std::string::npos);
+  const auto has = [&](const char* title) {
+    return std::any_of(run["figures"].begin(), run["figures"].end(),
+                       [&](const Json& figure) { return figure["title"] == title; });
+  };
+  EXPECT_TRUE(has("Frame time, worst"));
+  EXPECT_TRUE(has("Latency, worst"));
 }
 
 TEST_F(InBrowser, APageOfABudgetThatIsNotMetIsToo) {
@@ -329,7 +366,7 @@ TEST_F(InBrowser, APageOfAHistoryIsToo) {
                  path("history.jsonl"), "--quiet"});
   expect_done({"history", "page", "--file", path("history.jsonl"), "--budget", path("limits.yaml"),
                "--out", path("history.html")});
-  expect_fine("history.html");
+  expect_fine("history.html", 2);  // the answer, and what moved
 }
 
 /// As the odometry of `next` knows it.

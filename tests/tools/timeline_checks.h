@@ -88,7 +88,7 @@ class StageSums {
       const double cycles = event.number("cycles");
       stage.synchronisation += event.number("synchronisation");
       stage.serial += event.name == "serial work" ? cycles : event.number("serial");
-      const bool is_transfer = event.name == "DMA" || event.name == "wait: DMA";
+      const bool is_transfer = event.name == "DMA" || event.name == "waiting for the DMA";
       stage.transfer += is_transfer ? cycles : event.number("transfer");
       if (event.name.rfind("fork: ", 0) == 0) stage.forks += cycles;
       if (event.name == "short steps")

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <regex>
 
 #include "tests/tools/constant_source.h"
@@ -159,10 +160,10 @@ TEST(Timeline, SlicesLieWithinTheirFrameAndWaitsWithinTheirWork) {
       EXPECT_GE(event.begin_ns, stack.back().begin_ns);
       EXPECT_LE(event.end_ns, stack.back().end_ns);
     }
-    if (event.name.rfind("wait: ", 0) == 0 && event.name != "wait: DMA") {
+    if (event.name.rfind("waiting for ", 0) == 0 && event.name != "waiting for the DMA") {
       ++waits;
       ASSERT_FALSE(stack.empty());
-      const std::string part = event.name.substr(6);
+      const std::string part = event.name.substr(std::string_view("waiting for ").size());
       const double drawn = static_cast<double>(event.end_ns - event.begin_ns) * 0.37;
       EXPECT_NEAR(drawn, stack.back().number(part), 1.5) << part;
     }
@@ -318,6 +319,34 @@ TEST(TimelinePicture, AreasOfWorkAndWaitsAreThoseOfTheCycles) {
   EXPECT_NEAR(area_of(svg, "#2a7f62"), work * area_of_cycle, tolerance);
   EXPECT_NEAR(area_of(svg, "#be202e"), divider * area_of_cycle, tolerance);
   EXPECT_GT(area_of(svg, "#be202e"), 0);
+}
+
+TEST(TimelinePicture, OfTenFramesHasNoLabelsOnEachOtherAndAColourForEachStage) {
+  MixedSource source({.frames = 10, .iteration = 5'000}, 8, 3);
+  RunRequest request = testing::request_at(Hertz(370'000'000), std::nullopt);
+  request.cores = 8;
+  TimelineCollector collector(request.platform.config, 8);
+  request.observer = &collector;
+  const RunResult run = simulate_source(request, source, [](const Progress&) {});
+  const std::string svg = timeline_picture(collector.events(), run);
+  // On a line, from left to right: where each text ends if a letter is 6 px wide.
+  std::map<std::string, std::map<double, double>> lines;
+  const std::regex text(
+      R"re(<text x="([0-9.]+)" y="([0-9.]+)" font-size="([0-9.]+)" text-anchor="([a-z]+)"[^>]*>([^<]*)<)re");
+  for (std::sregex_iterator i(svg.begin(), svg.end(), text), end; i != end; ++i) {
+    const double width = 6.0 * static_cast<double>((*i)[5].length());
+    const double from = std::stod((*i)[1]) - ((*i)[4] == "end"      ? width
+                                              : (*i)[4] == "middle" ? width / 2
+                                                                    : 0);
+    lines[(*i)[2]][from] = from + width;
+  }
+  for (const auto& [y, spans] : lines)
+    for (auto span = spans.begin(); span != spans.end() && std::next(span) != spans.end(); ++span)
+      EXPECT_LE(span->second, std::next(span)->first) << "y " << y;
+  for (const FrameEvents& frame : collector.events().frames)
+    for (const StageEvents& stage : frame.stages) {
+      EXPECT_NE(svg.find(fmt::format(">{}</text>", stage.name)), std::string::npos) << stage.name;
+    }
 }
 
 TEST(XmlFault, IsSeen) {

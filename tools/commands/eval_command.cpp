@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -240,6 +241,18 @@ Evaluated evaluated(const std::string& estimate, const EvalOptions& options, Eva
   return result;
 }
 
+/// As it was named, but of a path only what tells it from the others; of a run folder its own name.
+std::string short_name(const Evaluated& one, const std::vector<Evaluated>& all) {
+  const auto name = [](const Evaluated& e) {
+    const std::filesystem::path file = e.pair.estimate.file;
+    const bool is_of_run = file.filename() == "trajectory.tum" && file.has_parent_path();
+    return (is_of_run ? file.parent_path() : file).lexically_normal().filename().string();
+  };
+  const auto same = std::count_if(all.begin(), all.end(),
+                                  [&](const Evaluated& e) { return name(e) == name(one); });
+  return printable(same > 1 || name(one).empty() ? one.pair.estimate.file.string() : name(one));
+}
+
 /// A row for each estimate, in the order in which they were named.
 std::string side_by_side(const std::vector<Evaluated>& all) {
   using E = const Evaluated&;
@@ -253,7 +266,7 @@ std::string side_by_side(const std::vector<Evaluated>& all) {
     };
   };
   Columns<Evaluated> table{
-      {{"estimate", kLeft}, [](E e) { return printable(e.pair.estimate.file.string()); }},
+      {{"estimate", kLeft}, [&](E e) { return short_name(e, all); }},
       {{"ATE m"}, fixed([](const Evaluation& e) { return e.translation.rmse; }, 4)},
       {{"median"}, fixed([](const Evaluation& e) { return e.translation.median; }, 4)},
       {{"worst"}, fixed([](const Evaluation& e) { return e.translation.max; }, 4)},
@@ -278,8 +291,8 @@ std::string conclusion(const std::vector<Evaluated>& all) {
         return a.accuracy.evaluation.translation.rmse < b.accuracy.evaluation.translation.rmse;
       });
   const Evaluation& e = best.accuracy.evaluation;
-  std::string text = fmt::format("in short: {}: {:.3f} m RMSE",
-                                 printable(best.pair.estimate.file.string()), e.translation.rmse);
+  std::string text =
+      fmt::format("in short: {}: {:.3f} m RMSE", short_name(best, all), e.translation.rmse);
   if (e.path_length_m > 0)
     text += fmt::format(", {:.2f} % of the path", 100 * e.translation.rmse / e.path_length_m);
   return text;
@@ -303,7 +316,7 @@ std::string json_of(const std::vector<Evaluated>& all, const EvalRequest& reques
 }
 
 /// What the page shows of an estimate, in the words of the page of a run.
-Json shown(const Evaluated& one) {
+Json shown(const Evaluated& one, const std::vector<Evaluated>& all) {
   const Evaluation& e = one.accuracy.evaluation;
   const bool timed = one.pair.estimate.stamps == traces::Stamps::time;
   Json errors;
@@ -326,7 +339,7 @@ Json shown(const Evaluated& one) {
     for (const double heading : attitude->headings_deg)
       errors["heading_error_deg"].push_back(std::abs(heading));
   }
-  return {{"name", printable(one.pair.estimate.file.string())},
+  return {{"name", short_name(one, all)},
           {"sentence", std::move(sentence)},
           {"protocol", e.protocol},
           {"time", timed ? "s since the first pose" : "number of the pose"},
@@ -335,8 +348,11 @@ Json shown(const Evaluated& one) {
 
 Json page_of(const std::vector<Evaluated>& all) {
   Json data =
-      report_json("Against " + printable(all.front().pair.truth.file.string()), Json::array());
-  for (const Evaluated& one : all) data["evaluations"].push_back(shown(one));
+      report_json(all.size() == 1 ? "A trajectory beside its truth"
+                                  : fmt::format("{} trajectories beside their truth", all.size()),
+                  Json::array());
+  data["truth"] = printable(all.front().pair.truth.file.string());
+  for (const Evaluated& one : all) data["evaluations"].push_back(shown(one, all));
   return data;
 }
 

@@ -78,7 +78,7 @@ figure breakdown
 needs data
 shows 'leviosim run --platform gap9 -p workload.released=on --data euroc/MH_01_easy_t05_t20 \
       --tables all --out released'
-cut 'sed "1,/^where the core-cycles go/d" | table stage stage useful I-cache FPU divider banks imbalance transfer serial'
+cut 'sed "1,/^where the core-cycles go/d" | table stage stage useful code FPU divider "L1 banks" "slowest core" DMA serial'
 
 figure sensitivity
 needs data

@@ -3,6 +3,7 @@
 #include "sim/base/csv.h"
 #include "sim/base/printable.h"
 #include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/main_causes.h"
 #include "tools/app/comparison/model_errors.h"
 #include "tools/app/record/record.h"
 #include "tools/app/result/verdict.h"
@@ -86,6 +87,9 @@ Json comparison_json(const RunComparison& c) {
   json["notes"] = c.notes;
   json["same_work"] = c.same_work();
   json["figures"] = list_json(c.figures);
+  for (const MainCause& cause : worth_naming(main_causes(timed_parts(c.a), timed_parts(c.b))))
+    json["why"].push_back(
+        {{"text", cause_text(cause)}, {"ms", rounded(cause.ms)}, {"stage", cause.stage}});
   if (c.a.facts.measured || c.b.facts.measured)
     for (const ModelError& e : model_errors(c))
       json["model_errors"].push_back({{"stage", e.stage},

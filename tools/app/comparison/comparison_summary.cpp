@@ -21,12 +21,7 @@ constexpr std::size_t kMostFigures = 6;
 
 constexpr std::size_t kMostStages = 4;
 
-constexpr std::size_t kMostCauses = 5;
-
 constexpr double kPerKilo = 1e3;
-
-/// Of the whole difference: a cause with less goes without saying.
-constexpr double kLeastCause = 0.02;
 
 std::string screen_line(const std::string& text) { return shortened(text, kScreenColumns) + '\n'; }
 
@@ -118,13 +113,8 @@ std::vector<std::string> cause_lines(const RunComparison& c) {
   if (c.a.cycles.empty() || c.b.cycles.empty())
     return {screen_line("where the cycles of one of the runs went is not known; replay its trace")};
   std::vector<std::string> lines;
-  const std::vector<MainCause> causes = main_causes(timed_parts(c.a), timed_parts(c.b));
-  double most = 0;
-  for (const MainCause& cause : causes) most = std::max(most, std::abs(cause.ms));
-  for (const MainCause& cause : causes)
-    if (lines.size() < kMostCauses && std::abs(cause.ms) >= kLeastCause * most &&
-        std::abs(cause.ms) >= 0.005)
-      lines.push_back(screen_line("  " + cause_text(cause)));
+  for (const MainCause& cause : worth_naming(main_causes(timed_parts(c.a), timed_parts(c.b))))
+    lines.push_back(screen_line("  " + cause_text(cause)));
   if (!lines.empty())
     lines.insert(lines.begin(), screen_line("why a mean frame takes another time:"));
   if (std::string tiles = tiles_line(c); !tiles.empty()) lines.push_back(std::move(tiles));

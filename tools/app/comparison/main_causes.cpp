@@ -164,6 +164,19 @@ TimedParts timed_parts(const RunRecord& run) {
           Hertz(std::llround(run.value("run.cluster_clock").value_or(1)))};
 }
 
+std::vector<MainCause> worth_naming(std::vector<MainCause> causes) {
+  constexpr std::size_t kMost = 5;
+  constexpr double kLeastPart = 0.02;
+  constexpr double kLeast_ms = 0.005;
+  double most = 0;
+  for (const MainCause& cause : causes) most = std::max(most, std::abs(cause.ms));
+  std::erase_if(causes, [&](const MainCause& cause) {
+    return std::abs(cause.ms) < std::max(kLeastPart * most, kLeast_ms);
+  });
+  if (causes.size() > kMost) causes.resize(kMost);
+  return causes;
+}
+
 std::string cause_text(const MainCause& cause) {
   std::string text = fmt::format("{} {:+.2f} ms", cause.what, cause.ms);
   if (cause.stage.empty()) return text;

@@ -33,6 +33,10 @@ TimedParts timed_parts(const RunRecord& run);
 /// The largest first.
 std::vector<MainCause> main_causes(const TimedParts& a, const TimedParts& b);
 
+/// Of main_causes(), those without which the difference is not explained: at most five, none of
+/// less than a fiftieth of the largest.
+std::vector<MainCause> worth_naming(std::vector<MainCause> causes);
+
 /// "waiting for code -11.20 ms, most in EPnP RANSAC".
 std::string cause_text(const MainCause& cause);
 

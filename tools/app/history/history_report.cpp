@@ -131,7 +131,9 @@ Json stage_json(const StageParts& stage, double frames) {
   Json parts = Json::object();
   for (const CyclePart& part : stage.parts) {
     std::string name = part.where.empty() ? std::string() : part.where + ": ";
-    name += part_label(part.mechanism) + (part.operation.empty() ? "" : " " + part.operation);
+    const std::string label = part_label(part.mechanism);
+    name += label;
+    if (!label.ends_with(part.operation)) name += " (" + part.operation + ')';
     parts[name] = parts.value(name, 0.0) + rounded(part.cycles / frames / 1e3).get<double>();
   }
   return {{"name", stage.stage},

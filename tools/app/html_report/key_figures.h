@@ -13,8 +13,9 @@ namespace leviosim::tools {
 /// A stage in the frame that took longest.
 struct WorstFrame {
   int frame = 0;
-  double latency_ns = 0;
-  std::string stage;  ///< that took most of it; empty if not known
+  double latency_ns = 0;  ///< with what it waited
+  double waited_ns = 0;   ///< for the front end
+  std::string stage;      ///< that took most of it; empty if not known
   double stage_ns = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/base/check.h"
+#include "sim/chip/account.h"
 #include "tools/app/cli/screen.h"
 #include "tools/app/html_report/page_parts.h"
 #include "tools/app/table/json.h"
@@ -43,6 +44,10 @@ Json report_json(const std::string& title, Json runs) {
   data["format"] = "leviosim report";
   data["version"] = 1;
   data["title"] = title;
+  data["mechanisms"] = Json::array();
+  for (const sim::MechanismInfo& info : sim::kMechanisms)
+    if (!info.column.empty())
+      data["mechanisms"].push_back({{"key", info.key}, {"group", info.column}});
   data["runs"] = std::move(runs);
   return data;
 }

@@ -9,8 +9,8 @@
 
 namespace leviosim::tools {
 
-/// The data of a report: {"format", "version", "title", "runs": [run_json()…]} and, where there are
-/// some, "comparisons", "check", "study".
+/// The data of a report: {"format", "version", "title", "mechanisms": [{"key", "group"}…], "runs":
+/// [run_json()…]} and, where there are some, "comparisons", "check", "study".
 Json report_json(const std::string& title, Json runs);
 
 /// A page of other scripts than those that show runs.

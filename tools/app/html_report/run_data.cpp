@@ -48,6 +48,8 @@ std::optional<WorstFrame> worst_frame(const RunRecord& record, const Json& frame
   WorstFrame worst;
   worst.frame = frames.at("frame")[*at].get<int>();
   worst.latency_ns = latencies[*at].get<double>();
+  worst.waited_ns =
+      frames.at("start_ns")[*at].get<double>() - frames.at("arrival_ns")[*at].get<double>();
   const double clock = record.value("run.cluster_clock").value_or(0);
   for (const Json& stage : stages) {
     const std::string column = kStageColumn + stage.at("key").get<std::string>();
@@ -92,15 +94,6 @@ Json stages_of(const RunRecord& record, const Json& table) {
       const Json& name = table.at("stage")[i];
       add(name, key_of(name.get<std::string>()), table.at("runs_on")[i] == "controller");
     }
-  return list;
-}
-
-/// What the parts of the breakdown are called, and what they mean.
-Json account_of(const Json& stages) {
-  Json list = Json::array();
-  for (const sim::MechanismInfo& info : sim::kMechanisms)
-    if (stages.contains(std::string(info.key) + "_core_cycles"))
-      list.push_back({{"key", info.key}, {"group", info.column}, {"meaning", info.meaning}});
   return list;
 }
 
@@ -162,6 +155,8 @@ Json tables_of(const RunFolder& run) {
   const auto where = [&](const char* name) { return run.record.name + '/' + name; };
   expect_columns(where(kFramesFile), tables["frames"],
                  {"frame", "source", "health", "health_reasons"});
+  if (!tables["frames"].is_null() && tables["frames"].contains("latency_ns"))
+    expect_columns(where(kFramesFile), tables["frames"], {"arrival_ns", "start_ns"});
   expect_columns(where(kStagesFile), tables["stages"],
                  {"stage", "call", "runs_on", "calls", "single_cycles", "parallel_cycles"});
   expect_columns(where(kMemoryFile), tables["memory"],
@@ -193,7 +188,6 @@ Json run_json(const RunFolder& run) {
   json["verdict"]["why"] = worst ? reason_of(*worst) : "";
   json["figures"] = key_figures_json(record, protocol);
   json["protocol"] = protocol;
-  if (!json["tables"]["stages"].is_null()) json["breakdown"] = account_of(json["tables"]["stages"]);
   return json;
 }
 

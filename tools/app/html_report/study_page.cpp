@@ -4,6 +4,7 @@
 
 #include "tools/app/html_report/page.h"
 #include "tools/app/table/table_files.h"
+#include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
 namespace {
@@ -24,14 +25,30 @@ bool is_empty(const Json& cells) {
 Json study_report(const StudyPage& page) {
   Json data = report_json(page.title, Json::array());
   Json& study = data["study"];
-  study["summary"] = page.summary;
+  constexpr std::string_view kConclusion = "in short: ";
+  std::string_view summary = page.summary;
   study["boxes"] = Json::array();
+  if (summary.starts_with(kConclusion)) {
+    const std::string_view line = summary.substr(0, summary.find('\n'));
+    summary.remove_prefix(line.size());
+    study["boxes"].push_back({{"good", nullptr},
+                              {"mark", "Answer"},
+                              {"sentence", line.substr(kConclusion.size())},
+                              {"lines", Json::array()}});
+  }
+  study["summary"] = summary;
   for (const StudyBox& box : page.boxes)
     study["boxes"].push_back({{"good", box.good ? Json(*box.good) : Json(nullptr)},
                               {"mark", box.mark},
                               {"sentence", box.sentence},
                               {"lines", box.lines}});
-  study["best"] = page.best;
+  study["found"] = Json::array();
+  for (const auto& [title, table] : page.found) {
+    std::vector<std::vector<std::string>> rows = shown_cells(table);
+    const std::vector<std::string> titles = std::move(rows.front());
+    rows.erase(rows.begin());
+    study["found"].push_back({{"title", title}, {"titles", titles}, {"rows", rows}});
+  }
   const Json table = columns_json(page.points);
   study["columns"] = Json::array();
   study["table"] = Json::object();
@@ -62,7 +79,9 @@ Json study_report(const StudyPage& page) {
                        {"fromZero", page.curves->from_zero},
                        {"names", page.curves->names},
                        {"marks", page.curves->marks}};
-  if (page.bars) study["bars"] = {{"of", page.bars->of}, {"figures", page.bars->figures}};
+  if (page.bars)
+    study["bars"] = {
+        {"of", page.bars->of}, {"figures", page.bars->figures}, {"title", page.bars->title}};
   return data;
 }
 

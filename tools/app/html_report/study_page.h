@@ -27,6 +27,13 @@ struct StudyCurves {
 struct StudyBars {
   std::string of;  ///< names the rows
   std::vector<std::string> figures;
+  std::string title = {};  ///< of one chart of figures that are changes; empty: a chart for each
+};
+
+/// A table that answers, beside that of the points.
+struct StudyTable {
+  std::string title;
+  Table table;  ///< as people see it
 };
 
 /// What a study found: a box with a mark, as the verdict of a run has.
@@ -40,9 +47,9 @@ struct StudyBox {
 struct StudyPage {
   std::string title;
   std::vector<StudyBox> boxes = {};
-  std::string summary;                              ///< lines below the boxes
-  std::vector<std::vector<std::string>> best = {};  ///< a table: titles, then rows; may be empty
-  Table points{{}};                                 ///< a row per point
+  std::string summary;  ///< lines below the boxes; of a conclusion the page makes a box
+  std::vector<StudyTable> found = {};
+  Table points{{}};  ///< a row per point
   /// Of the table of points, those with key and title; empty: as the table has them.
   std::vector<Head> columns = {};
   std::optional<StudyCurves> curves = {};

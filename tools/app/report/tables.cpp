@@ -38,7 +38,7 @@ std::string milliseconds_text(std::optional<double> cycles, Hertz clock) {
 }
 
 /// Those that are small on most chips, so that they go first where the width is short.
-constexpr std::array<std::string_view, 4> kSmallColumns{"divider", "banks", "sync", "transfer"};
+constexpr std::array<std::string_view, 4> kSmallColumns{"divider", "L1 banks", "sync", "DMA"};
 
 int rank_of(std::string_view column) {
   return std::find(kSmallColumns.begin(), kSmallColumns.end(), column) == kSmallColumns.end() ? 0
@@ -303,8 +303,8 @@ std::string breakdown_table(const RunResult& run, int width) {
   }
   return fmt::format("where the core-cycles go on {} [%]\n", on_cores(run.cores)) +
          terminal_text(table, width) +
-         "serial: the team idles while the master works alone; imbalance: waiting for the slowest "
-         "core of a fork\n";
+         "serial: the team idles while the master works alone; all others but useful: waiting for "
+         "it\n";
 }
 
 std::string memory_table(const RunResult& run, int width) {

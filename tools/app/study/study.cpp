@@ -39,7 +39,8 @@ void claim(const Study& study, const StudyOptions& options,
 std::string page_of(const Study& study, Answer& found) {
   StudyPage& page = found.page;
   if (page.title.empty()) page.title = study.line;
-  if (page.summary.empty()) page.summary = found.conclusion;
+  if (page.boxes.empty() || page.summary.empty())
+    page.summary = found.conclusion + (page.summary.empty() ? "" : '\n' + page.summary);
   if (page.points.heads().empty()) page.points = found.rows;
   return html_page(study_report(page));
 }

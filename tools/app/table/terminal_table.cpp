@@ -59,6 +59,11 @@ class TextTable {
 
   std::string text(int width) const;
   std::string markdown() const;
+  std::vector<std::vector<std::string>> cells() const {
+    std::vector<std::vector<std::string>> cells{titles_};
+    cells.insert(cells.end(), rows_.begin(), rows_.end());
+    return cells;
+  }
 
  private:
   /// A line of the columns that have a width.
@@ -181,6 +186,10 @@ std::string markdown_text(const std::string& raw) {
 }
 
 std::string terminal_text(const Table& table, int width) { return TextTable(table).text(width); }
+
+std::vector<std::vector<std::string>> shown_cells(const Table& table) {
+  return TextTable(table).cells();
+}
 
 std::string markdown_table(const Table& table) { return TextTable(table).markdown(); }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tools/app/cli/screen.h"
 #include "tools/app/table/table.h"
@@ -14,6 +15,9 @@ namespace leviosim::tools {
 /// titles then end in "…". Before that, columns of long text, which are aligned to the left, are
 /// cut.
 std::string terminal_text(const Table& table, int width = table_width());
+
+/// What people see of it: the titles, then the rows.
+std::vector<std::vector<std::string>> shown_cells(const Table& table);
 
 /// A table for Markdown files; cells as markdown_text().
 std::string markdown_table(const Table& table);

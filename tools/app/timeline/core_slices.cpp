@@ -54,7 +54,7 @@ void CoreSlices::add_master(const StepEvents& step) {
   if (step.synchronisation != 0) notes.push_back({"synchronisation", step.synchronisation});
   if (step.kind == StepKind::Fork) name = fmt::format("fork: {}", step.name);
   if (step.kind == StepKind::Transfer) name = "DMA";
-  if (step.kind == StepKind::Wait) name = "wait: DMA";
+  if (step.kind == StepKind::Wait) name = "waiting for the DMA";
   if (step.kind == StepKind::Several) {
     name = "short steps";
     notes.push_back({"steps", std::int64_t{step.steps}});
@@ -96,7 +96,7 @@ void CoreSlices::add_waits(std::uint64_t track, const CoreEvents& core) {
   for (const Wait& wait : kWaits) {
     const double cycles = wait.of(core.split);
     if (cycles < kLeastDrawn * worked || cycles <= 0) continue;
-    writer_.begin(track, ns(at), {fmt::format("wait: {}", wait.name)});
+    writer_.begin(track, ns(at), {fmt::format("waiting for {}", wait.name)});
     at = std::max(at, before_end(left -= cycles));
     writer_.end(track, ns(at));
   }

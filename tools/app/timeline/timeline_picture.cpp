@@ -121,7 +121,8 @@ double tick_step(double length, int most) {
 constexpr double kWidth = 1000;
 constexpr double kLeftEdge = 96;
 constexpr double kPlotWidth = 880;
-constexpr double kTop = 66;
+constexpr double kLegendTop = 38;
+constexpr double kLegendStep = 18;
 constexpr double kRowHeight = 19;
 constexpr double kRowStep = 25;
 constexpr double kColumn = 2;  ///< of a strip, whose shares are shown [px]
@@ -136,7 +137,11 @@ constexpr std::size_t kParts = 1 + kWaits.size() + 1;
 constexpr std::size_t kIdle = kParts - 1;
 constexpr std::array<const char*, kParts> kPartColours{"#2a7f62", "#d98e04", "#be202e", "#7a3b9a",
                                                        "#203e8c", "#5c6670", "#d5dbe1"};
-constexpr std::array kStageColours{"#c9d8f0", "#e3ecd4", "#f3e2c7", "#e9d3e6"};
+/// Of stages in the order in which they come first, pale ones since names stand in them.
+constexpr std::array kStageColours{"#c9d8f0", "#f3e2c7", "#e9d3e6", "#e3ecd4",
+                                   "#f6cfc6", "#cfe9ea", "#f4efb8", "#d9d2ea",
+                                   "#dfe3e8", "#c8e3c9", "#ead9c9", "#f7d9e3"};
+constexpr std::array kIterationColours{"#dfe3e8", "#c9d1da"};
 
 std::string_view name_of_part(std::size_t part) {
   if (part == 0) return "work";
@@ -161,7 +166,8 @@ class Picture {
   double x_of(double at_ms) const {
     return kLeftEdge + (at_ms - begin_ms_) / (end_ms_ - begin_ms_) * kPlotWidth;
   }
-  double row_top(std::size_t row) const { return kTop + kRowStep * static_cast<double>(row); }
+  double top() const { return kLegendTop + kLegendStep * static_cast<double>(legend_lines_) + 10; }
+  double row_top(std::size_t row) const { return top() + kRowStep * static_cast<double>(row); }
   std::size_t rows() const { return static_cast<std::size_t>(events_.cores) + 5; }
   double bottom() const { return row_top(rows()); }
 
@@ -170,6 +176,8 @@ class Picture {
   void add_core(std::vector<Strip>& strips, const StepEvents& step, const CoreEvents& core) const;
   std::vector<Strip> strips() const;
 
+  const char* colour_of(std::string_view stage) const;
+  void lay_out_legend();
   void draw_legend(Svg& svg) const;
   void draw_axis(Svg& svg) const;
   void draw_label(Svg& svg, std::size_t row, std::string_view name) const;
@@ -186,10 +194,54 @@ class Picture {
   const RunResult& run_;
   double begin_ms_ = 0;
   double end_ms_ = 1;
+
+  struct LegendItem {
+    SvgPoint at;
+    std::string name;
+    const char* colour;
+  };
+  std::vector<LegendItem> legend_;
+  std::size_t legend_lines_ = 0;
+  std::vector<std::string_view> stages_;  ///< in the order of their colours
 };
 
 Picture::Picture(const TimelineEvents& events, const RunResult& run) : events_(events), run_(run) {
   find_span();
+  for (const FrameEvents& frame : events_.frames)
+    for (const StageEvents& stage : frame.stages)
+      if (std::find(stages_.begin(), stages_.end(), stage.name) == stages_.end())
+        stages_.push_back(stage.name);
+  lay_out_legend();
+}
+
+const char* Picture::colour_of(std::string_view stage) const {
+  const auto at = std::find(stages_.begin(), stages_.end(), stage) - stages_.begin();
+  return kStageColours[static_cast<std::size_t>(at) % kStageColours.size()];
+}
+
+/// What the cores do, and on new lines the stages.
+void Picture::lay_out_legend() {
+  double x = kLeftEdge;
+  const auto new_line = [&] {
+    x = kLeftEdge;
+    ++legend_lines_;
+  };
+  const auto add = [&](std::string name, const char* colour) {
+    const double width = 34 + kLetterWidth * static_cast<double>(name.size());
+    if (x > kLeftEdge && x + width > kWidth) new_line();
+    legend_.push_back({{x, kLegendTop + kLegendStep * static_cast<double>(legend_lines_)},
+                       std::move(name),
+                       colour});
+    x += width;
+  };
+  for (std::size_t part = 0; part < kParts; ++part)
+    if (name_of_part(part) != "accelerator" ||
+        sim::has_accelerators(run_.chip.cluster.accelerators))
+      add(fmt::format("{}{}", part == 0 || part == kIdle ? "" : "waiting for ", name_of_part(part)),
+          kPartColours[part]);
+  new_line();
+  for (const std::string_view stage : stages_) add(std::string(stage), colour_of(stage));
+  if (x > kLeftEdge) new_line();
 }
 
 /// From the arrival of the first frame to the last pose, or to the deadline after it.
@@ -248,16 +300,9 @@ std::vector<Strip> Picture::strips() const {
 }
 
 void Picture::draw_legend(Svg& svg) const {
-  double x = kLeftEdge;
-  for (std::size_t part = 0; part < kParts; ++part) {
-    if (name_of_part(part) == "accelerator" &&
-        !sim::has_accelerators(run_.chip.cluster.accelerators))
-      continue;
-    svg.rectangle({x, 38, 11, 11}, kPartColours[part]);
-    const std::string name =
-        fmt::format("{}{}", part == 0 || part == kIdle ? "" : "wait: ", name_of_part(part));
-    svg.text({x + 16, 48}, name, {.size = 11});
-    x += 34 + kLetterWidth * static_cast<double>(name.size());
+  for (const LegendItem& item : legend_) {
+    svg.rectangle({item.at.x, item.at.y, 11, 11}, item.colour);
+    svg.text({item.at.x + 16, item.at.y + 10}, item.name, {.size = 11});
   }
 }
 
@@ -267,7 +312,7 @@ void Picture::draw_axis(Svg& svg) const {
   const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
   for (int k = 0; k * step <= length; ++k) {
     const double x = x_of(begin_ms_ + k * step);
-    svg.line({x, kTop - 4}, {x, bottom()}, "#e4e8ec", 1);
+    svg.line({x, top() - 4}, {x, bottom()}, "#e4e8ec", 1);
     svg.text({x, bottom() + 15}, fmt::format("{:.{}f}", k * step, decimals),
              {.size = 11, .anchor = "middle"});
   }
@@ -290,21 +335,23 @@ void Picture::draw_block(Svg& svg, std::size_t row, double from_ms, double to_ms
 
 void Picture::draw_front_end(Svg& svg) const {
   draw_label(svg, 0, "front end");
-  for (const FrameEvents& frame : events_.frames) {
-    std::size_t index = 0;
+  for (const FrameEvents& frame : events_.frames)
     for (const StageEvents& stage : frame.stages)
-      draw_block(svg, 0, ms(stage.begin), ms(stage.end), stage.name,
-                 kStageColours[index++ % kStageColours.size()]);
-  }
+      draw_block(svg, 0, ms(stage.begin), ms(stage.end), stage.name, colour_of(stage.name));
 }
 
+/// Labels stand where they do not reach the one before.
 void Picture::draw_deadlines(Svg& svg) const {
+  double free_from = 0;
   for (const FrameEvents& frame : events_.frames) {
     const bool late = is_late(frame.result, run_);
     const double x =
         x_of(static_cast<double>(frame.result.arrival_ns + run_.frame_period_ns) * 1e-6);
-    svg.line({x, kTop - 8}, {x, bottom()}, late ? kMiss : kInk, 1.2, " stroke-dasharray=\"4 3\"");
-    svg.text({x - 4, kTop - 5}, late ? "deadline missed" : "deadline",
+    svg.line({x, top() - 8}, {x, bottom()}, late ? kMiss : kInk, 1.2, " stroke-dasharray=\"4 3\"");
+    const std::string_view label = late ? "deadline missed" : "deadline";
+    if (x - 4 - kLetterWidth * static_cast<double>(label.size()) < free_from) continue;
+    free_from = x;
+    svg.text({x - 4, top() - 5}, label,
              {.size = 10.5, .anchor = "end", .colour = late ? kMiss : kInk});
   }
 }
@@ -362,7 +409,7 @@ void Picture::draw_controller(Svg& svg) const {
     const double to = std::min(ms(iteration.end), end_ms_);
     if (from < to)
       draw_block(svg, rows() - 1, from, to, fmt::format("iteration {}", iteration.iteration),
-                 kStageColours[static_cast<std::size_t>(iteration.iteration) % 2]);
+                 kIterationColours[static_cast<std::size_t>(iteration.iteration) % 2]);
   }
 }
 

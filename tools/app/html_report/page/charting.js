@@ -106,7 +106,7 @@ const barNames = {
   },
 };
 
-/** A text at the end of each horizontal bar: [text]. */
+/** A text at the end of each horizontal bar, or behind its begin where it has no room: [text]. */
 const barTexts = {
   id: 'barTexts',
   afterDatasetsDraw(chart, _, options) {
@@ -119,8 +119,12 @@ const barTexts = {
       const text = (options.texts || [])[index];
       if (!text) return;
       const {x, base, y} = bar.getProps(['x', 'base', 'y'], true);
-      ctx.textAlign = x < base ? 'right' : 'left';
-      ctx.fillText(text, x + (x < base ? -6 : 6), y);
+      const {left, right} = chart.chartArea;
+      const width = ctx.measureText(text).width + 6;
+      const fitsLeft = x < base && x - width >= left;
+      const from = fitsLeft ? x : Math.min(Math.max(x, base), right - width);
+      ctx.textAlign = fitsLeft ? 'right' : 'left';
+      ctx.fillText(text, from + (fitsLeft ? -6 : 6), y);
     });
     ctx.restore();
   },
@@ -133,18 +137,17 @@ function drawAll() {
   for (const entry of charts) entry.draw();
 }
 
-/** A label in lines that take a good third of a narrow chart. */
+/** A label in lines that take a good third of a narrow chart; paths break behind their signs. */
 function labelLines(text, width) {
   const most = Math.max(12, Math.floor((width * 0.36) / 6));
-  const lines = [];
-  for (const word of text.split(' ')) {
-    const last = lines[lines.length - 1];
-    if (last !== undefined && last.length + 1 + word.length <= most)
-      lines[lines.length - 1] = `${last} ${word}`;
+  if (text.length <= most) return [text];
+  const lines = [''];
+  for (const word of text.match(/[^ .,=_/]*[ .,=_/]|[^ .,=_/]+$/g) || [text])
+    if (lines[lines.length - 1] === '' || (lines[lines.length - 1] + word).trimEnd().length <= most)
+      lines[lines.length - 1] += word;
     else
       lines.push(word);
-  }
-  return lines;
+  return lines.map((line) => line.trimEnd());
 }
 
 /** Of rows of bars with such labels, in px. */
@@ -186,8 +189,11 @@ function legendFor(chart, datasets, hidden, redraw) {
                       redraw(dataset.label);
                     },
                   },
-                  element(
-                      'i', {style: `background:${dataset.legendColor || dataset.backgroundColor}`}),
+                  element('i', {
+                    style: dataset.legendLine ?
+                        `height:0;border-top:3px ${dataset.legendLine} currentcolor` :
+                        `background:${dataset.legendColor || dataset.backgroundColor}`
+                  }),
                   dataset.label))));
 }
 

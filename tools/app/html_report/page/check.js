@@ -62,7 +62,7 @@ function checkSection(check) {
                   'dl', {class: 'facts'},
                   ...[['where', finding.where], ['why', (finding.why || []).join('; ')],
                       ['reason', finding.reason], ['owner', finding.owner],
-                      ['line', `${check.budget}:${finding.line}`]]
+                      ['line', finding.line > 0 ? `${check.budget}:${finding.line}` : '']]
                       .filter(([, value]) => value)
                       .flatMap(([name,
                                  value]) => [element('dt', {}, name), element('dd', {}, value)])))),

@@ -1,25 +1,5 @@
 // What differs between two runs, and why: by stage and mechanism, by fork, by block, by energy.
 
-const kMechanismColours = {__proto__: null};
-for (const [, colour, parts] of kGroups)
-  parts.forEach((part, i) => {
-    kMechanismColours[part] = shade(colour, [0, -0.35, 0.45, -0.6][i]);
-  });
-
-/** Each its own; what has no group takes a colour that is left. */
-function mechanismColour(name) {
-  if (!kMechanismColours[name]) {
-    const taken = new Set(Object.values(kMechanismColours));
-    kMechanismColours[name] =
-        kPalette.find((colour) => !taken.has(colour)) || paletteColour(taken.size);
-  }
-  return kMechanismColours[name];
-}
-
-function words(key) {
-  return key.replaceAll('_', ' ');
-}
-
 /** B minus A; sums of floating point that differ in their last digits are the same. */
 function differenceOf({a, b, difference}) {
   if (difference === null) return null;
@@ -54,12 +34,14 @@ function mechanismFigure(comparison) {
       (stage) => stage.by_mechanism &&
           (stage.by_mechanism.parts || []).some((p) => Math.abs(p.difference) > 0.5));
   if (stages.length === 0) return null;
-  const names =
-      [...new Set(stages.flatMap((stage) => stage.by_mechanism.parts.map((part) => part.name)))];
-  const partOf = (stage, name) => {
-    const part = stage.by_mechanism.parts.find((p) => p.name === name);
-    return part ? part.difference / 1e3 : 0;
-  };
+  const names = [...new Set([
+    ...kMechanisms.keys(),
+    ...stages.flatMap((stage) => stage.by_mechanism.parts.map((part) => mechanismOf(part.name)))
+  ])];
+  const partOf = (stage, name, side = 'difference') =>
+      sum(stage.by_mechanism.parts.filter((part) => mechanismOf(part.name) === name)
+              .map((part) => part[side])) /
+      1e3;
   const seen = names.filter((name) => stages.some((stage) => Math.abs(partOf(stage, name)) > 1e-3));
   return chartFigure({
     title: 'Difference of a mean frame, by stage and mechanism',
@@ -71,8 +53,8 @@ function mechanismFigure(comparison) {
       data: {
         labels: stages.map((stage) => stage.name),
         datasets: seen.map((name) => ({
-                             label: words(name),
-                             backgroundColor: mechanismColour(name),
+                             label: name,
+                             backgroundColor: mechanismColours.of(name),
                              barPercentage: 0.75,
                              data: stages.map((stage) => partOf(stage, name))
                            }))
@@ -106,10 +88,10 @@ function mechanismFigure(comparison) {
         {title: 'B, kcycles'}, {title: 'B − A'}
       ],
       rows: stages.flatMap(
-          (stage) => stage.by_mechanism.parts.map(
-              (part) =>
-                  [stage.name, words(part.name), part.a / 1e3, part.b / 1e3,
-                   part.difference / 1e3])),
+          (stage) => seen.map(
+              (name) =>
+                  [stage.name, name, partOf(stage, name, 'a'), partOf(stage, name, 'b'),
+                   partOf(stage, name)])),
     }),
   });
 }
@@ -158,28 +140,34 @@ function causesTable(comparison) {
           rows, {whole: true, label: 'Work, cost or contention'}));
 }
 
+/** What a mean frame takes, or the first figure that both have, and why, in a sentence each. */
+function differenceCard(comparison, notes) {
+  const [first] = comparison.figures;
+  const value = (x) => (x === null ? '–' : `${numberText(x)} ${first.unit}`);
+  const percent = first ? percentOf(first) : null;
+  const text = !first ? 'No figure is in both.' :
+                        `${capital(first.name)}: ${value(first.b)} in place of ${value(first.a)}${
+                            percent === null ? '' : `, ${signed(percent)} %`}.`;
+  const why = (comparison.why || []).map(({text}) => element('li', {}, text));
+  return element(
+      'div', {class: 'card verdict'}, element('p', {class: 'sentence'}, text),
+      why.length > 0 ? element('ul', {}, ...why) : null,
+      element(
+          'p', {class: 'soft'}, element('strong', {}, 'A '), comparison.a.name, ' · ',
+          element('strong', {}, 'B '), comparison.b.name, '. ',
+          comparison.same_work ? 'Both did the same work.' : 'The work itself differs.'),
+      notes);
+}
+
 function comparisonSections(comparisons) {
   return comparisons.map((comparison, i) => {
     const changed = (quantity) => quantity.parts || [quantity];
     const notes = comparison.notes.length > 0 ?
         element('ul', {class: 'hint'}, ...comparison.notes.map((note) => element('li', {}, note))) :
         null;
-    const frame = comparison.frame;
     return section(
         `difference${i + 1}`, comparisons.length > 1 ? `Difference ${i + 1}` : 'Difference',
-        element(
-            'div', {class: 'card'},
-            element(
-                'p', {}, element('strong', {}, 'A '), comparison.a.name, element('br'),
-                element('strong', {}, 'B '), comparison.b.name),
-            element(
-                'p', {},
-                frame.a !== null && frame.b !== null ?
-                    `A mean frame takes ${numberText(frame.b / 1e3, 5)} kilocycles instead of ${
-                        numberText(frame.a / 1e3, 5)}: ${signed(percentOf(frame))} %. ` :
-                    '',
-                comparison.same_work ? 'Both did the same work.' : 'The work itself differs.'),
-            notes),
+        differenceCard(comparison, notes),
         mechanismFigure(comparison), forkTable(comparison), causesTable(comparison),
         quantityTable('The run as a whole', comparison.figures, 'figure'),
         comparison.blocks.length > 0 ?

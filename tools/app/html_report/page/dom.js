@@ -38,37 +38,42 @@ function style(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
-// Colours that people with any colour vision tell apart (after Paul Tol), on light and on dark.
-const kPalette = [
+/** The data of the page. */
+const kPage = JSON.parse(document.getElementById('data').textContent);
+
+// A kind of thing has colours of its own, so that a colour means one thing on all charts: people
+// with any colour vision tell those of a kind apart (after Paul Tol, Okabe and Ito, Brewer), on
+// light and on dark. Blocks of memory have pale ones, since their names stand in them.
+const kStagePalette = [
   '#8c99a8', '#4477aa', '#66ccee', '#ee7755', '#44aa88', '#ddaa33', '#aa5588', '#228833', '#b0b8c1',
   '#775599', '#999933', '#cc6677'
 ];
+const kMechanismPalette = [
+  '#77aadd', '#b3cfee', '#f4a582', '#eedd88', '#c9b95a', '#ffaabb', '#c297d0', '#e3c6ea', '#8fd0b5',
+  '#c4c8cc', '#7fbf7b', '#d9f0d3'
+];
+const kDomainPalette =
+    ['#5e81b5', '#e19c24', '#8fb032', '#eb6235', '#9a73b5', '#c56e1a', '#5d9ec7', '#a0a5ab'];
+const kSeriesPalette = ['#0072b2', '#e69f00', '#009e73', '#cc79a7', '#56b4e9', '#d55e00', '#a6a014'];
+const kBlockPalette = ['#bcc8d6', '#d8cfbf', '#bfd3c6', '#d6c3cf', '#a9b7c7', '#c7c1b0'];
 
-function paletteColour(index) {
-  return kPalette[index % kPalette.length];
-}
-
-/** A colour that is mixed with white, or with black if `by` is negative. */
-function shade(colour, by) {
-  const to = by < 0 ? 0 : 255;
-  const mixed = [1, 3, 5].map((at) => {
-    const from = parseInt(colour.slice(at, at + 2), 16);
-    return Math.round(from + (to - from) * Math.abs(by)).toString(16).padStart(2, '0');
-  });
-  return `#${mixed.join('')}`;
+function seriesColour(index) {
+  return kSeriesPalette[index % kSeriesPalette.length];
 }
 
 /** Name → colour, in the order in which names come first: the same everywhere in the page. */
 class Colours {
-  constructor() {
+  constructor(palette) {
+    this.palette = palette;
     this.names = new Map();
   }
   of(name) {
-    if (!this.names.has(name)) this.names.set(name, paletteColour(this.names.size));
+    if (!this.names.has(name))
+      this.names.set(name, this.palette[this.names.size % this.palette.length]);
     return this.names.get(name);
   }
 }
-const stageColours = new Colours();
+const stageColours = new Colours(kStagePalette);
 const kWaiting = 'waiting for the front end';
 const kOther = 'offload and return';
 const kSpecialColours = {

@@ -1,16 +1,8 @@
 // Energy and power of a run by stage and domain, with their bands.
 
-const kDomainColours = {
-  __proto__: null,
-  cores: '#4477aa',
-  fpu: '#ddaa33',
-  l1: '#66ccee',
-  dma: '#44aa88',
-  cluster: '#aa5588',
-  controller: '#228833',
-  l2: '#ee7755',
-  soc: '#8c99a8'
-};
+const domainColours = new Colours(kDomainPalette);
+for (const domain of ['cores', 'fpu', 'l1', 'dma', 'cluster', 'controller', 'l2', 'soc'])
+  domainColours.of(domain);
 
 /** stage → domain → {value, low, high} of a quantity. */
 function energyOf(run, quantity) {
@@ -39,7 +31,7 @@ function domainFigure(title, hint, unit, entries) {
         datasets: domains.map(
             (domain) => ({
               label: domain,
-              backgroundColor: kDomainColours[domain] || '#999933',
+              backgroundColor: domainColours.of(domain),
               barPercentage: 0.75,
               data: entries.map(([, parts]) => (parts[domain] ? parts[domain].value : null))
             }))

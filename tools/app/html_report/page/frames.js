@@ -1,13 +1,13 @@
 // The frames of a run: how long each took and with what, and single frames stage by stage.
 
-// Of the sources of poses, in the order in which a run lists them; what comes after has others.
-const kSourceColours =
-    ['#8c99a8', '#ee7755', '#ddaa33', '#5f6b7a', '#aa5588', '#44aa88', '#66ccee'];
+// Of the sources of poses, in the order in which a run lists them.
+const sourceColours = new Colours(
+    ['#dfe3e8', '#f2b705', '#6c4fb3', '#3d4f6b', '#e0729f', '#1fa187', '#9fd4f0', '#7a5230']);
 
 /** How a frame got its pose, or that it got none: name → {words, colour}. */
 function kindsOf(run) {
   const kinds = new Map(run.pose_sources.map(
-      ({name, words}, i) => [name, {words, colour: kSourceColours[i] || paletteColour(i)}]));
+      ({name, words}) => [name, {words, colour: sourceColours.of(name)}]));
   return kinds.set('dropped', {words: 'dropped', colour: '#b3261e'});
 }
 
@@ -269,10 +269,13 @@ function framesSection(run) {
                         .sort((a, b) => a.latency - b.latency || a.number - b.number);
   if (processed.length === 0)
     return section('frames', 'Frames', element('p', {class: 'card'}, 'No frame was processed.'));
-  const describe = (what, frame) => frame.latency === null ?
-      `Frame ${frame.number} was dropped` :
-      `${what} frame: number ${frame.number}, ${data.wordsOf(frame)}${
-          frame.keyframe ? ', keyframe' : ''}, ${numberText(frame.latency)} ms`;
+  const describe = (what, frame) => {
+    if (frame.latency === null) return `Frame ${frame.number} was dropped`;
+    const [waited] = frame.parts;
+    return `${what} frame: number ${frame.number}, ${data.wordsOf(frame)}${
+        frame.keyframe ? ', keyframe' : ''}, ${numberText(frame.latency - waited)} ms${
+        waited > 1e-6 ? ` of its own after ${numberText(waited)} ms of waiting` : ''}`;
+  };
   const median = processed[Math.floor((processed.length - 1) / 2)];
   const worst = processed[processed.length - 1];
   let picked = processed[Math.floor((processed.length - 1) * 0.9)];

@@ -1,14 +1,15 @@
 // Puts the page together from the data.
 
 function main() {
-  const data = JSON.parse(document.getElementById('data').textContent);
+  const data = kPage;
   const content = document.getElementById('content');
   for (const run of data.runs)
     for (const stage of run.stages) stageColours.of(stage.name);
 
   const heading = element(
       'div', {}, element('h1', {}, data.title),
-      data.runs.length === 1 ? element('p', {class: 'hint'}, chipText(data.runs[0])) : null);
+      data.runs.length === 1 ? element('p', {class: 'hint'}, chipText(data.runs[0])) : null,
+      data.truth ? element('p', {class: 'hint'}, data.truth) : null);
   const details = element('div', {style: 'display:contents'});
   const top = element('section', {id: 'verdict', 'aria-label': 'Verdict'}, heading);
 
@@ -41,8 +42,7 @@ function main() {
         'div', {class: 'card'},
         element('div', {class: 'controls'}, element('label', {}, 'Show the details of', select))));
   }
-  (data.evaluations || []).forEach((evaluation, i) => content.append(trajectorySection(
-      evaluation, `trajectory-${i + 1}`, evaluation.name)));
+  if (data.evaluations) content.append(evaluationsSection(data.evaluations));
   if (data.study) content.append(...studySections(data.study, top));
   if (data.history) top.append(...historyCards(data.history));
   content.append(details);

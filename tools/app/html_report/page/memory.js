@@ -1,5 +1,8 @@
 // What occupies L1 and L2 at their peaks, block by block.
 
+/** A block has one colour in all bars, but shares it with others: its name stands in it. */
+const blockColours = new Colours(kBlockPalette);
+
 /** [{owner, bytes, blocks: [{name, bytes, copies}]}] of a memory. */
 function peaksOf(run, memory) {
   const table = run.tables.memory;
@@ -21,7 +24,6 @@ function peaksOf(run, memory) {
   return peaks;
 }
 
-/** Blocks of one name are one colour in all bars of a memory. */
 function memoryFigure(title, hint, peaks, size) {
   const names = [...new Set(peaks.flatMap((peak) => peak.blocks.map((block) => block.name)))];
   const bytesOf = (peak, name) =>
@@ -35,10 +37,10 @@ function memoryFigure(title, hint, peaks, size) {
       type: 'bar',
       data: {
         labels: peaks.map((peak) => peak.owner),
-        datasets: names.map((name, i) => ({
+        datasets: names.map((name) => ({
                               label: name,
                               silent: true,
-                              backgroundColor: paletteColour(i + 1),
+                              backgroundColor: blockColours.of(name),
                               borderColor: style('--card'),
                               borderWidth: {right: 1},
                               barPercentage: 0.85,

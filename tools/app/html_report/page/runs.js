@@ -1,8 +1,12 @@
 // A run from top to bottom, and the choice among several.
 
-/** The name of a run among others: the last parts of its path. */
+/** The names of runs: the last parts of their paths, as many as tell them apart. */
 function runNames(runs) {
-  const names = runs.map((run) => run.name);
+  const parts = runs.map((run) => run.name.split('/').filter(Boolean));
+  const ends = (count) => parts.map((part) => part.slice(-count).join('/'));
+  let count = 1;
+  while (new Set(ends(count)).size < runs.length && parts.some((part) => part.length > count)) ++count;
+  const names = ends(count);
   return names.map((name, i) => (names.indexOf(name) === i ? name : `${name} (${i + 1})`));
 }
 

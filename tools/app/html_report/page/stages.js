@@ -1,31 +1,22 @@
 // The stages of a run: their cycles on one core and on all, and what the cores did meanwhile.
 
-// In the groups and the order of the printed table; what cores do useful first.
-const kGroups = [
-  ['instructions', '#4477aa', ['issue']],
-  [
-    'stalls: loads, branches, arithmetic', '#7fb0d8',
-    ['load_use', 'control', 'memory', 'arithmetic']
-  ],
-  ['I-cache', '#66ccee', ['fetch', 'fetch_contention']],
-  ['FPU', '#ddaa33', ['fpu']],
-  ['divider', '#f0cf80', ['divider']],
-  ['L1 banks', '#ee7755', ['banks']],
-  ['imbalance', '#aa5588', ['imbalance', 'rounding']],
-  ['synchronisation', '#d29bc0', ['synchronisation']],
-  ['transfer', '#44aa88', ['transfer']],
-  ['serial', '#8c99a8', ['serial']],
-  ['accelerators', '#228833', ['accelerator', 'accelerator_contention']],
-];
+/**
+ * Mechanisms of the account as groups that are called what the printed tables call them: name →
+ * keys. What these tables call useful are instructions and the waits of a core for itself.
+ */
+const kMechanisms = new Map();
+for (const {key, group} of kPage.mechanisms) {
+  const name = group !== 'useful' ? group :
+      key === 'issue'             ? 'instructions' :
+                                    'stalls: loads, branches, arithmetic';
+  kMechanisms.set(name, [...(kMechanisms.get(name) || []), key]);
+}
+const mechanismColours = new Colours(kMechanismPalette);
+for (const name of kMechanisms.keys()) mechanismColours.of(name);
 
-/** The groups, and what the account of a run has beside them: each a group of its own. */
-function groupsOf(run) {
-  const grouped = new Set(kGroups.flatMap(([, , parts]) => parts));
-  const others = run.breakdown.filter(({key}) => !grouped.has(key));
-  return [
-    ...kGroups,
-    ...others.map(({key, group}, i) => [group || key, paletteColour(kGroups.length + i), [key]])
-  ];
+/** Of a key; what the account does not know keeps its own. */
+function mechanismOf(key) {
+  return [...kMechanisms].find(([, keys]) => keys.includes(key))?.[0] ?? key.replaceAll('_', ' ');
 }
 
 /** Rows of stages.csv as objects with name, calls, and cycles. */
@@ -63,11 +54,11 @@ function breakdownFigure(run, rows) {
         {row, single: true, label: `${row.name}, 1 core`},
         {row, single: false, label: `${row.name}, ${run.facts.cores} cores`}
       ]);
-  const groups = groupsOf(run).filter(
-      ([, , parts]) =>
+  const groups = [...kMechanisms].filter(
+      ([, parts]) =>
           bars.some((bar) => groupCycles(run, bar.row, parts, bar.single, frames) > 0));
   const valuesOf = (bar) =>
-      groups.map(([, , parts]) => groupCycles(run, bar.row, parts, bar.single, frames) / 1e3);
+      groups.map(([, parts]) => groupCycles(run, bar.row, parts, bar.single, frames) / 1e3);
   let shares = false;
   const select = element(
       'select', {
@@ -88,9 +79,9 @@ function breakdownFigure(run, rows) {
       type: 'bar',
       data: {
         labels: bars.map((bar) => bar.label),
-        datasets: groups.map(([name, colour], g) => ({
+        datasets: groups.map(([name], g) => ({
                                label: name,
-                               backgroundColor: colour,
+                               backgroundColor: mechanismColours.of(name),
                                barPercentage: 0.85,
                                categoryPercentage: 0.95,
                                data: bars.map((bar) => {

@@ -35,8 +35,9 @@ function axisType(values) {
   return least > 0 && greatest > 100 * least ? 'logarithmic' : 'linear';
 }
 
+/** A word as the first of a sentence; a path stays as it is. */
 function capital(text) {
-  return text.charAt(0).toUpperCase() + text.slice(1);
+  return /^\w+[.=/]/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1);
 }
 
 function curveFigure(study, yName) {
@@ -48,7 +49,7 @@ function curveFigure(study, yName) {
   const names = study.curves.names ? cells(study.curves.names) : null;
   const marks = new Set((study.curves.marks || {})[yName]);
   const colourOf = (i) => ({raw}) =>
-      raw && marks.has(raw.x) ? style('--bad') : paletteColour(i + 1);
+      raw && marks.has(raw.x) ? style('--bad') : seriesColour(i);
   const lines = values.map((value) => {
     const at = new Map();
     seriesOf.forEach((v, i) => {
@@ -85,8 +86,8 @@ function curveFigure(study, yName) {
               showLine: true,
               borderWidth: 2,
               pointRadius: ({raw}) => (raw && marks.has(raw.x) ? 6 : 3),
-              borderColor: paletteColour(i + 1),
-              backgroundColor: paletteColour(i + 1),
+              borderColor: seriesColour(i),
+              backgroundColor: seriesColour(i),
               pointBackgroundColor: colourOf(i),
               pointBorderColor: colourOf(i)
             }))
@@ -130,7 +131,73 @@ function curveFigure(study, yName) {
   });
 }
 
-/** By how much each row differs from the first: differences would not show in whole bars. */
+/** Of many rows only those whose figure changes by so much [%]. */
+const kFewBars = 12;
+const kLeastChange = 1;
+
+/**
+ * Changes of rows in per cent, the largest first where there are many: those beside the first row,
+ * since differences would not show in whole bars, or what the columns hold.
+ * @param series  [{label, changes: [% of each row], texts: [], colour: change → colour}]
+ */
+function changesFigure(title, hint, of, labels, series) {
+  const largest = (i) => Math.max(...series.map(({changes}) => Math.abs(changes[i] ?? 0)));
+  const rows = [...labels.keys()];
+  const shown = rows.length <= kFewBars ?
+      rows :
+      rows.filter((i) => largest(i) >= kLeastChange || series.some(({isBase}) => isBase && i === 0))
+          .sort((a, b) => largest(b) - largest(a));
+  const others = rows.length - shown.length;
+  return chartFigure({
+    title,
+    hint: others > 0 ?
+        `${hint} ${others} others change it by less than ${kLeastChange} %, or cannot run: see the table.` :
+        hint,
+    height: (width) => 60 + rowsHeight(shown.map((i) => labels[i]), width, 23),
+    config: (width) => ({
+      type: 'bar',
+      data: {
+        labels: shown.map((i) => labels[i]),
+        datasets: series.map(({label, changes, colour}) => ({
+                               label,
+                               data: shown.map((i) => changes[i]),
+                               backgroundColor: shown.map((i) => colour(changes[i])),
+                               legendColor: colour(1),
+                               grouped: false,
+                               barPercentage: 0.85,
+                               categoryPercentage: 0.95
+                             }))
+      },
+      options: {
+        indexAxis: 'y',
+        scales: {
+          x: {title: {display: true, text: 'change, %'}, grace: width < 600 ? '70%' : '30%', suggestedMin: -1, suggestedMax: 1},
+          y: {...stackedRows(), stacked: false}
+        },
+        plugins: {
+          barTexts: {
+            texts: shown.map(
+                (i) => (series[0].texts || [])[i]?.slice(0, width < 600 ? 1 : 2).join(', '))
+          }
+        }
+      },
+    }),
+    table: () => ({
+      columns: [
+        {title: of, text: true},
+        ...series.flatMap(
+            ({label, values}) => [...(values ? [{title: label}] : []), {title: `change of ${label}, %`}])
+      ],
+      rows: rows.map(
+          (i) =>
+              [labels[i],
+               ...series.flatMap(
+                   ({values, changes}) => [...(values ? [values[i]] : []), changes[i]])])
+    }),
+  });
+}
+
+/** By how much each row differs from the first. */
 function barFigure(study, name) {
   const column = study.columns.find((c) => c.name === name);
   const labels = study.table[study.bars.of];
@@ -138,44 +205,35 @@ function barFigure(study, name) {
   const [base] = values;
   const changes = values.map((value) => (value === null || !base ? null : 100 * (value / base - 1)));
   const better = (change) => (column.more ? change > 0 : change < 0);
-  const sign = (change) => `${change > 0 ? '+' : ''}${change.toFixed(1)} %`;
   const unit = column.unit ? ` ${column.unit}` : '';
   const texts = values.map((value, i) => {
-    if (value === null) return '';
-    return i === 0 ? `${numberText(value)}${unit}` :
-                     `${sign(changes[i])}, ${numberText(value)}${unit}`;
+    const whole = `${numberText(value)}${unit}`;
+    return value === null ? [] : i === 0 ? [whole] : [`${signed(changes[i], 2)} %`, whole];
   });
-  const title = `change of ${column.title}, %`;
-  return chartFigure({
-    title: capital(column.title),
-    hint: `Change beside ${labels[0]}. A row without a bar and a value cannot run, or has no such figure.`,
-    height: () => 60 + 23 * labels.length,
-    config: () => ({
-      type: 'bar',
-      data: {
-        labels,
-        datasets: [{
-          label: title,
-          data: changes,
-          backgroundColor: changes.map((c) => style(better(c) ? '--good' : '--bad')),
-          barPercentage: 0.85,
-          categoryPercentage: 0.95
-        }]
-      },
-      options: {
-        indexAxis: 'y',
-        scales: {
-          x: {title: {display: true, text: title}, grace: '30%', suggestedMin: -1, suggestedMax: 1},
-          y: stackedRows()
-        },
-        plugins: {barTexts: {texts}}
-      },
-    }),
-    table: () => ({
-      columns: [{title: study.bars.of, text: true}, {title: axisTitle(column)}, {title}],
-      rows: labels.map((label, i) => [label, values[i], changes[i]])
-    }),
-  });
+  return changesFigure(
+      capital(column.title),
+      `Change beside ${labels[0]}. A row without a bar and a value cannot run, or has no such figure.`,
+      study.bars.of, labels, [{
+        label: axisTitle(column),
+        values,
+        changes,
+        texts,
+        isBase: true,
+        colour: (c) => style(better(c) ? '--good' : '--bad')
+      }]);
+}
+
+/** Columns that are changes, in one chart. */
+function swingFigure(study) {
+  const {of, figures} = study.bars;
+  const column = (name) => study.columns.find((c) => c.name === name);
+  return changesFigure(
+      study.bars.title, '', of, study.table[of],
+      figures.filter(column).map((name, i) => ({
+                                   label: column(name).title,
+                                   changes: study.table[name],
+                                   colour: () => seriesColour(i)
+                                 })));
 }
 
 function scatterFigure(study) {
@@ -261,8 +319,8 @@ function scatterFigure(study) {
                   label: value === null ? 'points' :
                                           `${column(colourName).title} ${numberText(value)}`,
                   data: all.filter((p) => value === null || table[colourName][p.i] === value),
-                  backgroundColor: `${paletteColour(g + 1)}cc`,
-                  legendColor: paletteColour(g + 1),
+                  backgroundColor: `${seriesColour(g)}cc`,
+                  legendColor: seriesColour(g),
                   pointRadius: all.length > 400 ? 3 : 5,
                   pointHoverRadius: 7
                 })),
@@ -319,20 +377,22 @@ function studyBox({good, mark, sentence, lines}) {
       ...lines.map((line) => element('p', {class: 'soft'}, line)));
 }
 
-/** Points that no other beats. */
-function bestTable([titles, ...rows]) {
+/** A table of what was found, without columns of nothing. Cells that are numbers stand as such. */
+function foundTable({title, titles, rows}) {
   const cell = (text) => (text !== '' && Number.isFinite(Number(text)) ? Number(text) : text);
+  const shown = titles.map((_, i) => i).filter((i) => rows.some((row) => row[i] !== '–'));
+  const cells = rows.map((row) => shown.map((i) => cell(row[i])));
+  const isText = (i) => cells.some((row) => typeof row[i] !== 'number' && !/^[-–.\d]/.test(row[i]));
   return element(
-      'div', {class: 'card'}, element('h3', {}, 'Points that no other beats in all figures'),
+      'div', {class: 'card'}, element('h3', {}, title),
       sortableTable(
-          titles.map((title, i) => ({title, text: i === titles.length - 1})),
-          rows.map((row) => row.map(cell)), {label: 'Points that no other beats'}));
+          shown.map((column, i) => ({title: titles[column], text: isText(i)})), cells, {label: title}));
 }
 
 function studySections(study, top) {
   const count = study.columns.length > 0 ? study.table[study.columns[0].name].length : 0;
   top.append(...study.boxes.map(studyBox));
-  if (study.best.length > 0) top.append(bestTable(study.best));
+  top.append(...study.found.map(foundTable));
   if (study.summary)
     top.append(...study.summary.trim().split('\n').map((line) => element('p', {class: 'hint'}, line)));
   if (count === 0) return [element('p', {class: 'card'}, 'No point is finished.')];
@@ -340,8 +400,9 @@ function studySections(study, top) {
   if (study.bars)
     sections.push(section(
         'bars', 'Side by side',
-        ...study.bars.figures.filter((name) => study.table[name])
-            .map((name) => barFigure(study, name))));
+        ...(study.bars.title ? [swingFigure(study)] :
+                               study.bars.figures.filter((name) => study.table[name])
+                                   .map((name) => barFigure(study, name)))));
   if (study.curves)
     sections.push(section(
         'curves', 'Curves',

@@ -1,5 +1,7 @@
 // Tables whose columns sort at a click.
 
+const kMostEmptyRows = 3;
+
 /**
  * @param columns  [{title, text: whether cells are words, digits, wrap, node: cell → element}]
  * @param rows     arrays of cells: numbers, texts or null
@@ -11,16 +13,31 @@ function sortableTable(columns, rows, {whole = false, label = ''} = {}) {
           'th', {scope: 'col', class: column.text ? 'text' : null},
           element('button', {type: 'button', onclick: () => sortBy(index)}, column.title)));
 
+  const missing = (value) => value === null || value === undefined;
+  const rowOf = (row) => element('tr', {}, ...row.map((cell, i) => {
+    const column = columns[i];
+    const kind = [column.text ? 'text' : '', column.wrap ? 'wrap' : ''].join(' ').trim();
+    const content = column.node ? column.node(cell, row) :
+        column.text ? (missing(cell) ? '–' : String(cell)) :
+                      numberText(cell, column.digits);
+    return element('td', {class: kind || null}, content);
+  }));
+
+  /** Rows without any figure are one line, which shows them. */
   function fill(sorted) {
-    body.replaceChildren(...sorted.map(
-        (row) => element('tr', {}, ...row.map((cell, i) => {
-          const column = columns[i];
-          const kind = [column.text ? 'text' : '', column.wrap ? 'wrap' : ''].join(' ').trim();
-          const content = column.node ? column.node(cell, row) :
-              column.text ? (cell === null || cell === undefined ? '–' : String(cell)) :
-                            numberText(cell, column.digits);
-          return element('td', {class: kind || null}, content);
-        }))));
+    const figures = columns.map((column, i) => (column.text ? -1 : i)).filter((i) => i >= 0);
+    const isEmpty = (row) => figures.length > 0 && figures.every((i) => missing(row[i]));
+    const empty = sorted.filter(isEmpty);
+    if (empty.length <= kMostEmptyRows) return body.replaceChildren(...sorted.map(rowOf));
+    const more = element(
+        'button', {
+          type: 'button',
+          onclick: () => body.replaceChildren(...sorted.map(rowOf))
+        },
+        `${empty.length} rows without a figure`);
+    body.replaceChildren(
+        ...sorted.filter((row) => !isEmpty(row)).map(rowOf),
+        element('tr', {}, element('td', {class: 'text', colspan: columns.length}, more)));
   }
 
   function sortBy(index) {
@@ -28,7 +45,6 @@ function sortableTable(columns, rows, {whole = false, label = ''} = {}) {
     heads.forEach((head) => head.removeAttribute('aria-sort'));
     heads[index].setAttribute('aria-sort', ascending ? 'ascending' : 'descending');
     const sign = ascending ? 1 : -1;
-    const missing = (value) => value === null || value === undefined;
     fill([...rows].sort((a, b) => {
       if (missing(a[index]) || missing(b[index])) return missing(a[index]) - missing(b[index]);
       if (typeof a[index] === 'number' && typeof b[index] === 'number')

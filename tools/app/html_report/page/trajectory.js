@@ -1,7 +1,22 @@
-// Where the estimate was and where it should have been.
+// Where estimates were and where they should have been: over each other, in the colour of their
+// error, with the start marked.
 
-const kTruthColour = '#8c99a8';
-const kEstimateColour = '#4477aa';
+const kTruthColour = '#7d8794';
+/** Of the estimates, which have the colours of their errors. */
+const kDashes = [[], [7, 4], [2, 3], [10, 3, 2, 3]];
+const kErrorRamp = ['#2f7fc1', '#e0a526', '#d03b2f'];
+
+/** From no error to the greatest. */
+function errorColour(share) {
+  const at = Math.min(Math.max(share, 0), 1) * (kErrorRamp.length - 1);
+  const i = Math.min(Math.floor(at), kErrorRamp.length - 2);
+  const mixed = [1, 3, 5].map((digit) => {
+    const [from, to] =
+        [kErrorRamp[i], kErrorRamp[i + 1]].map((c) => parseInt(c.slice(digit, digit + 2), 16));
+    return Math.round(from + (to - from) * (at - i)).toString(16).padStart(2, '0');
+  });
+  return `#${mixed.join('')}`;
+}
 
 /** Limits of both axes between which metres are as long in x as in y. */
 function equalAxes([left, right], [low, high], width, height) {
@@ -19,35 +34,61 @@ function rangeOf(values) {
       ([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
 }
 
-/** Upwards is the axis y, or z. */
-function pathFigure(errors, title, up) {
-  const points =
-      (name) => errors[`${name}_x_m`].map((x, i) => ({x, y: errors[`${name}_${up}_m`][i]}));
-  const [truth, estimate] = [points('truth'), points('estimate')];
-  const all = [...truth, ...estimate];
+/** What the colours mean. */
+function errorRamp(most) {
+  return element(
+      'p', {class: 'ramp hint'}, 'error 0 ',
+      element('i', {style: `background:linear-gradient(90deg,${kErrorRamp.join(',')})`}),
+      ` ${numberText(most, 3)} m`);
+}
+
+/**
+ * Upwards is the axis y, or z.
+ * @param paths  [{name, errors}]; the truth is that of the longest
+ */
+function pathFigure(paths, title, up) {
+  const pointsOf = (errors, name) =>
+      errors[`${name}_x_m`].map((x, i) => ({x, y: errors[`${name}_${up}_m`][i], i}));
+  const longest = paths.reduce((a, b) => (b.errors.t_s.length > a.errors.t_s.length ? b : a));
+  const truth = pointsOf(longest.errors, 'truth');
+  const estimates = paths.map(({name, errors}) => ({name, errors, points: pointsOf(errors, 'estimate')}));
+  const all = [...truth, ...estimates.flatMap((e) => e.points)];
+  const most = Math.max(...paths.flatMap(({errors}) => errors.position_error_m));
   const axes = (width, height) =>
       equalAxes(rangeOf(all.map((p) => p.x)), rangeOf(all.map((p) => p.y)), width, height);
-  const line = (label, data, colour, width) => ({
-    label,
-    data,
-    showLine: true,
-    borderColor: colour,
-    backgroundColor: colour,
-    borderWidth: width,
-    pointRadius: 0,
-    pointHitRadius: 8,
-    pointHoverRadius: 4
-  });
+  const colourAt = (errors, i) => errorColour(errors.position_error_m[i] / (most || 1));
+  const line = {showLine: true, borderWidth: 2, pointRadius: 0, pointHitRadius: 8, pointHoverRadius: 4};
   return chartFigure({
     title,
-    hint: `The estimate after alignment, x to the right, ${
-        up} upwards; metres are as long on both axes.`,
+    hint: `After alignment, x to the right, ${
+        up} upwards; metres are as long on both axes. The triangle is the start.`,
+    controls: errorRamp(most),
     height: (width) => Math.min(420, Math.max(260, 0.75 * width)),
     config: (width, height) => ({
       type: 'scatter',
       data: {
-        datasets:
-            [line('estimate', estimate, kEstimateColour, 2), line('truth', truth, kTruthColour, 2)]
+        datasets: [
+          ...estimates.map(({name, errors, points}, k) => ({
+                             ...line,
+                             label: name,
+                             data: points,
+                             times: errors.t_s,
+                             backgroundColor: style('--ink'),
+                             legendLine: ['solid', 'dashed', 'dotted'][Math.min(k, 2)],
+                             borderDash: kDashes[k % kDashes.length],
+                             pointRadius: ({dataIndex}) => (dataIndex === 0 ? 7 : 0),
+                             pointStyle: 'triangle',
+                             segment: {borderColor: ({p1DataIndex}) => colourAt(errors, p1DataIndex)}
+                           })),
+          {
+            ...line,
+            label: 'truth',
+            data: truth,
+            times: longest.errors.t_s,
+            borderColor: kTruthColour,
+            backgroundColor: kTruthColour
+          }
+        ]
       },
       options: {
         interaction: {mode: 'nearest', intersect: false},
@@ -67,7 +108,7 @@ function pathFigure(errors, title, up) {
           tooltip: {
             callbacks: {
               label: (item) =>
-                  ` ${item.dataset.label} at ${numberText(errors.t_s[item.dataIndex], 4)} s: ${
+                  ` ${item.dataset.label} at ${numberText(item.dataset.times[item.dataIndex], 4)} s: ${
                       numberText(item.raw.x, 3)}, ${numberText(item.raw.y, 3)} m`
             }
           },
@@ -75,33 +116,39 @@ function pathFigure(errors, title, up) {
       },
     }),
     table: () => ({
-      columns: ['t, s', 'estimate x, m', `estimate ${up}, m`, 'truth x, m', `truth ${up}, m`].map(
-          (title) => ({title})),
-      rows: errors.t_s.map(
-          (t, i) => [t, estimate[i].x, estimate[i].y, truth[i].x, truth[i].y]),
+      columns: [
+        {title: 'estimate', text: true},
+        ...['t, s', 'estimate x, m', `estimate ${up}, m`, 'truth x, m', `truth ${up}, m`, 'error, m'].map(
+            (column) => ({title: column}))
+      ],
+      rows: estimates.flatMap(
+          ({name, errors, points}) => points.map(
+              ({x, y}, i) =>
+                  [name, errors.t_s[i], x, y, errors.truth_x_m[i], errors[`truth_${up}_m`][i],
+                   errors.position_error_m[i]])),
     }),
   });
 }
 
-function errorFigure(errors, name, time) {
-  const colour = '#aa5588';
-  const [, what, unit] = /^(.*)_error_(.*)$/.exec(name);
+function errorFigure(paths, column, time) {
+  const [, what, unit] = /^(.*)_error_(.*)$/.exec(column);
   return chartFigure({
     title: `${capital(what)} error over time`,
     height: (width) => Math.min(420, Math.max(260, 0.75 * width)),
     config: () => ({
       type: 'scatter',
       data: {
-        datasets: [{
-          label: `${what} error`,
-          data: errors.t_s.map((x, i) => ({x, y: errors[name][i]})),
-          showLine: true,
-          borderColor: colour,
-          backgroundColor: colour,
-          borderWidth: 2,
-          pointRadius: 0,
-          pointHoverRadius: 4
-        }]
+        datasets: paths.map(({name, errors}, k) => ({
+                              label: name,
+                              data: errors.t_s.map((x, i) => ({x, y: errors[column][i]})),
+                              showLine: true,
+                              borderColor: seriesColour(k),
+                              backgroundColor: seriesColour(k),
+                              borderDash: kDashes[k % kDashes.length],
+                              borderWidth: 2,
+                              pointRadius: 0,
+                              pointHoverRadius: 4
+                            }))
       },
       options: {
         interaction: {mode: 'nearest', axis: 'x', intersect: false},
@@ -111,34 +158,55 @@ function errorFigure(errors, name, time) {
         },
         plugins: {
           tooltip: {
-            callbacks: {label: ({raw}) => ` ${numberText(raw.y, 3)} ${unit} at ${numberText(raw.x, 4)}`}
+            callbacks: {
+              label: ({dataset, raw}) =>
+                  ` ${dataset.label}: ${numberText(raw.y, 3)} ${unit} at ${numberText(raw.x, 4)}`
+            }
           }
         },
       },
     }),
     table: () => ({
-      columns: [{title: time}, {title: `${what} error, ${unit}`}],
-      rows: errors.t_s.map((t, i) => [t, errors[name][i]])
+      columns: [{title: 'estimate', text: true}, {title: time}, {title: `${what} error, ${unit}`}],
+      rows: paths.flatMap(
+          ({name, errors}) => errors.t_s.map((t, i) => [name, t, errors[column][i]]))
     }),
   });
 }
 
-/** Of a run, or of an evaluation, which has a sentence and errors of the attitude. */
-function trajectorySection(run, id = 'trajectory', title = 'Trajectory') {
+/** @param paths  [{name, errors}] */
+function trajectoryFigures(paths, time = 's since the first pose') {
+  return element(
+      'div', {class: 'pair'}, pathFigure(paths, 'Trajectory from above', 'y'),
+      pathFigure(paths, 'Trajectory from the side', 'z'),
+      ...['position_error_m', 'tilt_error_deg', 'heading_error_deg']
+          .filter((column) => paths.every(({errors}) => errors[column]))
+          .map((column) => errorFigure(paths, column, time)));
+}
+
+function trajectorySection(run) {
   const {errors} = run.tables;
   if (!errors || errors.t_s.length === 0)
     return section(
-        id, title,
+        'trajectory', 'Trajectory',
         element(
             'p', {class: 'card soft'},
             'No positions beside the truth: the data have none, or the run is a replay.'));
   return section(
-      id, title, run.sentence ? element('p', {}, run.sentence) : null,
+      'trajectory', 'Trajectory',
       run.protocol ? element('p', {class: 'hint'}, run.protocol) : null,
-      element(
-          'div', {class: 'pair'}, pathFigure(errors, 'Trajectory from above', 'y'),
-          pathFigure(errors, 'Trajectory from the side', 'z'),
-          ...['position_error_m', 'tilt_error_deg', 'heading_error_deg']
-              .filter((name) => errors[name])
-              .map((name) => errorFigure(errors, name, run.time || 's since the first pose'))));
+      trajectoryFigures([{name: 'estimate', errors}]));
+}
+
+/** Estimates of one flight beside its truth: what each comes to, and all over each other. */
+function evaluationsSection(evaluations) {
+  const protocols = [...new Set(evaluations.map(({protocol}) => protocol))];
+  return section(
+      'trajectory', 'Trajectory',
+      ...evaluations.map(
+          ({name, sentence}) => element('p', {}, element('strong', {}, `${name} `), sentence)),
+      ...protocols.map((text) => element('p', {class: 'hint'}, text)),
+      trajectoryFigures(
+          evaluations.map(({name, tables}) => ({name, errors: tables.errors})),
+          evaluations[0].time));
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <filesystem>
 #include <set>
 
 #include "tools/app/study/accuracy_study.h"
@@ -232,11 +233,12 @@ std::string benchmark_notes(const Benchmark& benchmark, const BenchmarkResult& r
 }
 
 std::string benchmark_conclusion(const Benchmark& benchmark, const BenchmarkResult& result) {
+  const bool is_one_motion = benchmark.motions.size() == 1;  // which has no row for all
   std::string text;
   for (std::size_t v = 0; v < benchmark.plan.variants.size(); ++v) {
     const BenchmarkRow* worst = nullptr;
     for (const BenchmarkRow& row : result.rows)
-      if (row.variant == v && !row.motion &&
+      if (row.variant == v && row.motion.has_value() == is_one_motion &&
           (worst == nullptr || !row.percent.median ||
            (worst->percent.median && *row.percent.median > *worst->percent.median)))
         worst = &row;
@@ -250,7 +252,9 @@ std::string benchmark_conclusion(const Benchmark& benchmark, const BenchmarkResu
 
 StudyPage benchmark_page(const Benchmark& benchmark, const BenchmarkResult& result, Table runs) {
   StudyPage page;
-  page.title = fmt::format("Flights: {}", benchmark.plan.name);
+  page.title =
+      fmt::format("Flights: {}", std::filesystem::path(benchmark.plan.name).stem().string());
+  page.found = {{"Each profile on each set of flights", benchmark_rows(benchmark, result)}};
   page.summary = benchmark_notes(benchmark, result, "");
   page.points = std::move(runs);
   page.x = "path_m";

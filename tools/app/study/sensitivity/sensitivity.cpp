@@ -155,7 +155,11 @@ Answer answer(const StudyOptions& options, const RunnerOptions& runner, const Wo
                 .next = {"leviosim microbench"},
                 .rows = sensitivity_rows(found)};
   answer.parts.front().insert(0, heading(options, result));
-  answer.page.bars = {"number", {"frame_low_percent", "frame_high_percent"}};
+  answer.page.title =
+      fmt::format("Which uncertain numbers matter: {} on {}", options.profile, options.platform);
+  answer.page.bars = {"number",
+                      {"frame_low_percent", "frame_high_percent"},
+                      "A mean frame with each number at both ends of its range"};
   answer.page.x = "frame_low_percent";
   answer.page.y = "frame_high_percent";
   answer.page.colour = "confidence";
@@ -281,8 +285,10 @@ std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int 
 
 Table sensitivity_rows(const Sensitivity& sensitivity) {
   using S = const Swing&;
-  Columns<Swing> columns{{{.key = "number"}, [](S s) { return s.parameter.path; }},
-                         {{.key = "confidence"}, [](S s) { return s.parameter.confidence; }},
+  Columns<Swing> columns{{{.title = "number", .key = "number", .is_setup = true},
+                          [](S s) { return s.parameter.path; }},
+                         {{.title = "confidence", .key = "confidence", .is_setup = true},
+                          [](S s) { return s.parameter.confidence; }},
                          {{.key = "unit"}, [](S s) { return s.parameter.unit; }},
                          {{.key = "value"}, [](S s) { return spelled(s.parameter.value); }},
                          {{.key = "low"}, [](S s) { return s.parameter.range->low; }},

@@ -24,19 +24,9 @@ std::string shown(const SweepOutcome& outcome, std::size_t k) {
                : "-";
 }
 
-/// "16B/cycle" → "16 B/cycle", "4units" → "4": what is counted says the title.
-std::string readable(const std::string& value) {
-  const auto measure = platform::split_measure(value);
-  if (!measure || measure->unit.empty()) return value;
-  const std::string number = value.substr(0, value.find_first_not_of("+-.0123456789eE"));
-  const bool is_count =
-      measure->unit == "units" || measure->unit == "banks" || measure->unit == "cores";
-  return is_count ? number : fmt::format("{} {}", number, measure->unit);
-}
-
 std::string value_of(const SweepStore& store, int point, const std::string& key) {
   for (const auto& [name, value] : store.settings(point))
-    if (name == key) return readable(value);
+    if (name == key) return readable_setting(value);
   return "-";
 }
 
@@ -87,19 +77,22 @@ Front front_of(const SweepStore& store) {
   return front;
 }
 
-std::vector<std::string> cells_of(const SweepStore& store, const Front& front,
-                                  const SweepOutcome& outcome) {
-  std::vector<std::string> cells{fmt::format("{}", outcome.point)};
-  for (const std::string& key : front.keys) cells.push_back(value_of(store, outcome.point, key));
-  for (const std::size_t k : front.objectives) cells.push_back(shown(outcome, k));
-  return cells;
-}
-
-std::vector<std::string> titles_of(const Front& front) {
-  std::vector<std::string> titles{"point"};
-  titles.insert(titles.end(), front.titles.begin(), front.titles.end());
-  for (const std::size_t k : front.objectives) titles.emplace_back(kObjectives[k].title);
-  return titles;
+/// At most so many rows.
+Table front_table(const SweepStore& store, const Front& front, std::size_t most) {
+  std::vector<Head> heads{{"point"}};
+  for (const std::string& title : front.titles) heads.push_back({.title = title});
+  // Where the width is short, the last objectives go first, and what was set stays.
+  for (const std::size_t k : front.objectives)
+    heads.push_back({.title = kObjectives[k].title, .rank = static_cast<int>(k) + 1});
+  Table table(heads);
+  for (std::size_t i = 0; i < std::min(front.points.size(), most); ++i) {
+    const SweepOutcome& outcome = front.points[i];
+    std::vector<Cell> cells{outcome.point};
+    for (const std::string& key : front.keys) cells.push_back(value_of(store, outcome.point, key));
+    for (const std::size_t k : front.objectives) cells.push_back(shown(outcome, k));
+    table.add(std::move(cells));
+  }
+  return table;
 }
 
 /// "point 6 (fpu.units=4 refill_width=16)".
@@ -130,32 +123,28 @@ std::string beside_first(const std::vector<SweepOutcome>& outcomes, const SweepO
 
 }  // namespace
 
-std::vector<std::vector<std::string>> sweep_front(const SweepStore& store) {
+std::string readable_setting(const std::string& value) {
+  const auto measure = platform::split_measure(value);
+  if (!measure || measure->unit.empty()) return value;
+  const std::string number = value.substr(0, value.find_first_not_of("+-.0123456789eE"));
+  const bool is_count =
+      measure->unit == "units" || measure->unit == "banks" || measure->unit == "cores";
+  return is_count ? number : fmt::format("{} {}", number, measure->unit);
+}
+
+Table sweep_front(const SweepStore& store) {
   const Front front = front_of(store);
-  if (front.points.empty()) return {};
-  std::vector<std::vector<std::string>> rows{titles_of(front)};
-  for (const SweepOutcome& outcome : front.points) rows.push_back(cells_of(store, front, outcome));
-  return rows;
+  return front_table(store, front, front.points.size());
 }
 
 std::string front_text(const SweepStore& store) {
   const Front front = front_of(store);
   if (front.points.empty()) return {};
-  std::vector<Head> heads;
-  for (const std::string& title : titles_of(front)) heads.push_back({.title = title});
-  // Where the width is short, the last objectives go first, and what was set stays.
-  for (std::size_t i = 1 + front.keys.size(); i < heads.size(); ++i)
-    heads[i].rank = static_cast<int>(i);
-  Table table(heads);
-  for (std::size_t i = 0; i < std::min(front.points.size(), kMostRows); ++i) {
-    const std::vector<std::string> cells = cells_of(store, front, front.points[i]);
-    table.add(std::vector<Cell>(cells.begin(), cells.end()));
-  }
   std::string text = fmt::format(
       "Pareto front, {} of them: no other point is better in one column and as good in all "
       "others\n",
       front.points.size());
-  text += terminal_text(table);
+  text += terminal_text(front_table(store, front, kMostRows));
   if (front.points.size() > kMostRows)
     text += fmt::format("  and {} more: rows of sweep.csv\n", front.points.size() - kMostRows);
   if (!front.common.empty())

@@ -3,15 +3,17 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "tools/app/study/sweep/sweep_store.h"
+#include "tools/app/table/table.h"
 
 namespace leviosim::tools {
 
-/// Titles, then a row for each point of the front: what was set, and the objectives that differ.
-/// Empty without a front.
-std::vector<std::vector<std::string>> sweep_front(const SweepStore& store);
+/// "16B/cycle" → "16 B/cycle", "4units" → "4": what is counted says the name of the parameter.
+std::string readable_setting(const std::string& value);
+
+/// A row for each point of the front: what was set, and the objectives that differ.
+Table sweep_front(const SweepStore& store);
 
 /// The same as text, and what all points of the front have in common.
 std::string front_text(const SweepStore& store);

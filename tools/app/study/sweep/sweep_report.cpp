@@ -120,8 +120,16 @@ Json sweep_page(SweepStore& store, const std::optional<SweepCheck>& check) {
   page.title = "A sweep";
   page.boxes = {sweep_box(store)};
   if (check) add_check(*check, page.boxes);
-  page.best = sweep_front(store);
-  page.points = read_csv(kSweepCsv, store.csv());
+  if (Table front = sweep_front(store); !front.rows().empty())
+    page.found = {{"Points that no other beats in all figures", std::move(front)}};
+  const Table points = read_csv(kSweepCsv, store.csv());
+  page.points = Table(points.heads());
+  for (std::vector<Cell> row : points.rows()) {
+    for (Cell& cell : row)
+      if (const auto* text = std::get_if<std::string>(&cell.value()))
+        cell = readable_setting(*text);
+    page.points.add(std::move(row));
+  }
   const auto setup = [](std::string title, std::string key) -> Head {
     return {.title = std::move(title), .key = std::move(key), .is_setup = true};
   };
