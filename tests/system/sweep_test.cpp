@@ -268,7 +268,7 @@ TEST_F(SweepPlans, ParametersAreShownAsTheyAreWhereNothingSetsThem) {
                         window));
   EXPECT_EQ(all.points[1].settings_text(),
             "platform.cluster.clock=370MHz platform.cluster.fpu.mapping=fixed workload.window=4 "
-            "profile=levio-no-imu size=80x60 platform.cluster.workers=8cores cores=8 seed=1");
+            "profile=levio-no-imu size=80x60 platform.cluster.workers=8 cores=8 seed=1");
   EXPECT_EQ(all.points[2].parameters[6].text, "4");  // as many as workers
   EXPECT_EQ(all.points[2].parameters[6].number, 4);
   EXPECT_EQ(all.points[3].parameters[7].number, 7);

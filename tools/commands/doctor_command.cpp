@@ -141,8 +141,15 @@ struct Tool {
 };
 constexpr std::array kTools{Tool{"riscv64-unknown-elf-g++", "gcc-riscv64-unknown-elf"},
                             Tool{"arm-none-eabi-g++", "gcc-arm-none-eabi"},
-                            Tool{"qemu-riscv32", "qemu-user"}, Tool{"qemu-arm", "qemu-user"},
-                            Tool{"clang-query", "clang-tools"}};
+                            Tool{"qemu-riscv32", "qemu-user"},
+                            Tool{"qemu-arm", "qemu-user"},
+                            Tool{"clang-query", "clang-tools"},
+                            Tool{"make", "make"}};
+
+/// What leviosim-measure needs besides those programs (tools/rv32/measure_kernels.py).
+constexpr std::array kMeasureFiles{
+    Tool{"/usr/lib/picolibc/riscv64-unknown-elf/lib", "picolibc-riscv64-unknown-elf"},
+    Tool{"/usr/include/capstone/capstone.h", "libcapstone-dev"}};
 
 void add_tools(Findings& all) {
   for (const Tool& tool : kTools) {
@@ -154,6 +161,11 @@ void add_tools(Findings& all) {
     }
     all.push_back({"tools", tool.program, !place.empty(),
                    place.empty() ? fmt::format("apt-get install {}", tool.package) : place});
+  }
+  for (const Tool& file : kMeasureFiles) {
+    const bool found = base::exists(file.program);
+    all.push_back({"tools", file.package, found,
+                   found ? file.program : fmt::format("apt-get install {}", file.package)});
   }
 }
 

@@ -131,7 +131,10 @@ std::vector<std::string> cause_lines(const RunComparison& c) {
 /// "in short: B takes 41.60 ms for a mean frame, A 41.94 (-0.8 %)"
 std::string conclusion(const RunComparison& c) {
   if (c.figures.empty()) return screen_line("in short: no figure is in both");
-  const ComparedQuantity& first = c.figures.front();
+  const auto known = std::find_if(c.figures.begin(), c.figures.end(),
+                                  [](const ComparedQuantity& q) { return q.a && q.b; });
+  if (known == c.figures.end()) return screen_line("in short: no figure is in both");
+  const ComparedQuantity& first = *known;
   const int decimals = first.unit == "ms" ? 2 : 3;
   return screen_line(
       fmt::format("in short: {}: A {}, B {} {}{}", first.name, figure_text(first.a, decimals),

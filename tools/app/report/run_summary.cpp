@@ -270,6 +270,17 @@ std::string table_of(const std::vector<RelativeErrors>& errors) {
 
 }  // namespace
 
+namespace {
+
+/// Why its error is not that of a run on a chip. Of what has no optimiser beside it, nothing.
+std::string native_line(const RunResult& run) {
+  if (!run.ate || run.optimiser_published == 0) return {};
+  return "natively the optimiser takes no time: each frame sees its newest result, which on a chip "
+         "comes frames later, so errors differ";
+}
+
+}  // namespace
+
 std::string verdict(const RunResult& run) { return "verdict: " + figures_of(run).verdicts.text(); }
 
 std::string run_summary(const std::string& heading, const RunResult& run, int width, int others) {
@@ -278,7 +289,8 @@ std::string run_summary(const std::string& heading, const RunResult& run, int wi
     below = {fmt::format("{}{}{}", frame_time_line(run), kComma, row_figures(run)),
              latency_line(run), memory_line(run), tiles_line(run), energy_line(run)};
   else
-    below = {frame_summary(run).substr(0, frame_summary(run).find('\n')), row_figures(run)};
+    below = {frame_summary(run).substr(0, frame_summary(run).find('\n')), row_figures(run),
+             native_line(run)};
   for (std::string& line : trajectory_lines(run)) below.push_back(std::move(line));
   for (const std::string& note : run.notes) below.push_back("data: " + printable(note));
   std::string end;

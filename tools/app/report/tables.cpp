@@ -243,9 +243,16 @@ std::vector<double> tenths_of_percent(const std::vector<double>& parts) {
 Table stages_of(const RunResult& run, const std::vector<const StageResult*>& stages,
                 std::string_view mark_of_controller) {
   using S = const StageResult* const&;
-  const auto in_ms = [&](S s, std::optional<double> cycles) {
-    return milliseconds_text(cycles, clock_of(run, *s));
+  // Of a workload whose stages all take less than half a millisecond, microseconds.
+  const bool is_small = std::all_of(stages.begin(), stages.end(), [&](S s) {
+    constexpr double kSmall_ms = 0.5;
+    return milliseconds(mean(s->parallel, s->calls).value_or(0), clock_of(run, *s)) < kSmall_ms;
+  });
+  const auto in_time = [&, is_small](S s, std::optional<double> cycles) {
+    if (!cycles || !is_small) return milliseconds_text(cycles, clock_of(run, *s));
+    return figure_text(1e3 * milliseconds(*cycles, clock_of(run, *s)), 2);
   };
+  const std::string unit = is_small ? "µs" : "ms";
   return table_of(
       Columns<const StageResult*>{
           {{"stage", kLeft},
@@ -256,9 +263,9 @@ Table stages_of(const RunResult& run, const std::vector<const StageResult*>& sta
           {{"kcycles, " + on_cores(run.cores)},
            [](S s) { return kilo(mean(s->parallel, s->calls), 2); }},
           {{"speed-up"}, [](S s) { return figure_text(speedup(*s), 2); }},
-          {{"ms"}, [&](S s) { return in_ms(s, mean(s->parallel, s->calls)); }},
-          {{"worst ms", kRight, 1},
-           [&](S s) { return in_ms(s, mean(s->worst_parallel, s->calls > 0 ? 1 : 0)); }}},
+          {{unit}, [&](S s) { return in_time(s, mean(s->parallel, s->calls)); }},
+          {{"worst " + unit, kRight, 1},
+           [&](S s) { return in_time(s, mean(s->worst_parallel, s->calls > 0 ? 1 : 0)); }}},
       stages);
 }
 
@@ -279,7 +286,7 @@ std::string stage_table(const RunResult& run, int width) {
   for (const StageResult& stage : run.stages) all.push_back(&stage);
   const bool any_on_controller = std::any_of(run.stages.begin(), run.stages.end(),
                                              [](const StageResult& s) { return s.on_controller; });
-  return fmt::format("stages (mean of a call; ms on {})\n", on_cores(run.cores)) +
+  return fmt::format("stages (mean of a call; times on {})\n", on_cores(run.cores)) +
          terminal_text(stages_of(run, all, " ¹"), width) +
          (run.cores == 1 ? ""
                          : "1 core: this program on the master alone (--cores 1: the program for "
@@ -311,7 +318,9 @@ std::string memory_table(const RunResult& run, int width) {
   using O = const Occupant&;
   const auto kb = [](std::optional<Bytes> b) { return b ? kilobytes(*b) : kNothing; };
   const auto percent = [](O o, std::optional<Bytes> b) {
-    return b ? figure_text(percent_of_nominal(*b, o.size), 2) : kNothing;
+    return b ? figure_text(
+                   100.0 * static_cast<double>(b->count()) / static_cast<double>(o.size.count()), 2)
+             : kNothing;
   };
   const Columns<Occupant> table{
       {{"peak", kLeft}, [](O o) { return o.name; }},
@@ -322,7 +331,7 @@ std::string memory_table(const RunResult& run, int width) {
       {{"%, " + on_cores(run.cores)}, [=](O o) { return percent(o, o.parallel); }}};
   const std::vector<Occupant> rows = occupants(run);
   return fmt::format("memory (kB of 1000 bytes, % of {} kB L1 and {} kB L2)\n",
-                     run.l1_size.count() / 1024, run.l2_size.count() / 1024) +
+                     kilobytes(run.l1_size), kilobytes(run.l2_size)) +
          terminal_text(table_of(table, rows), width) +
          blocks_at_peak(rows, std::min(width, kWidth));
 }

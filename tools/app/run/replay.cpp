@@ -16,12 +16,16 @@ void check_cores(const traces::WorkTrace& trace, const RunRequest& request) {
   const int most = request.platform.config.cluster.workers;
   if (recorded > most)
     throw InputError(fmt::format(
-        "{}: its work was divided among {} cores; {} has {}, expected as many (cluster.workers={})",
-        trace.name(), recorded, request.platform.name, most, recorded));
+        "{}: its work was divided among {} cores; {} has {}, expected as many "
+        "(cluster.workers={}), "
+        "or work that is recorded for {}: run --record --cores {}, in a sweep base: {{ data: … }}",
+        trace.name(), recorded, request.platform.name, most, recorded, most, most));
   if (request.cores != recorded)
     throw InputError(fmt::format(
         "{}: its work was divided among {} cores, and how a program divides its work among {} is "
-        "not in it; replay with --cores {}, or record again with run --record --cores {}",
+        "not in it; replay with --cores {}, or record again with run --record --cores {}, in a "
+        "sweep "
+        "base: {{ data: … }}",
         trace.name(), recorded, request.cores, recorded, request.cores));
 }
 

@@ -145,8 +145,9 @@ std::string heading(const RunOptions& options, const RunResult& run) {
   for (const std::vector<std::string>* sets : {&chip, &workload})
     for (const std::string& set : *sets) text += ", " + printable(set);
   if (run.timed)
-    text += fmt::format(", {} cores at {:g} MHz, controller at {:g} MHz", run.cores,
-                        megahertz(run.cluster_clock), megahertz(run.controller_clock));
+    text += fmt::format(", {} core{} at {:g} MHz, controller at {:g} MHz", run.cores,
+                        run.cores == 1 ? "" : "s", megahertz(run.cluster_clock),
+                        megahertz(run.controller_clock));
   if (run.timed && sim::knows_energy(run.chip))
     text += fmt::format(", {:g} V", run.chip.supply.voltage.count());
   if (run.camera)

@@ -183,11 +183,25 @@ std::vector<vio::Assignment> parse_workload_overrides(const std::vector<std::str
   return assignments;
 }
 
+namespace {
+
+/// "; profiles without it: levio-no-imu" of what is a part of a pipeline, such as "workload.imu".
+std::string profiles_without(std::string_view name) {
+  const std::string part = fmt::format("-no-{}", name.substr(name.rfind('.') + 1));
+  std::string profiles;
+  for (const std::string& profile : vio::profile_names())
+    if (profile.find(part) != std::string::npos)
+      profiles += fmt::format("{}{}", profiles.empty() ? "; profiles without it: " : ", ", profile);
+  return profiles;
+}
+
+}  // namespace
+
 const Parameter& workload_parameter(const std::string& where, const std::string& name) {
   const Parameter* const parameter = vio::find_parameter(name);
   if (parameter == nullptr)
-    throw InputError(fmt::format("{}: the workload has no parameter '{}'{}", where, name,
-                                 base::did_you_mean(name, names())));
+    throw InputError(fmt::format("{}: the workload has no parameter '{}'{}{}", where, name,
+                                 base::did_you_mean(name, names()), profiles_without(name)));
   return *parameter;
 }
 

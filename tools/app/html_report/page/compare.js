@@ -142,7 +142,7 @@ function causesTable(comparison) {
 
 /** What a mean frame takes, or the first figure that both have, and why, in a sentence each. */
 function differenceCard(comparison, notes) {
-  const [first] = comparison.figures;
+  const first = comparison.figures.find(({a, b}) => a !== null && b !== null);
   const value = (x) => (x === null ? '–' : `${numberText(x)} ${first.unit}`);
   const percent = first ? percentOf(first) : null;
   const text = !first ? 'No figure is in both.' :

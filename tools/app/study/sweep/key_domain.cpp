@@ -45,6 +45,8 @@ class RangeReader {
     const YamlEntry* scale = map_.find("scale");
     if (step != nullptr && scale != nullptr) place.fail("has step and scale; expected one of them");
     if (step != nullptr) return steps(low, high, *step);
+    if (scale != nullptr && map_.text(*scale) == "powers_of_two")
+      return powers_of_two(low, high, map_.place(*scale));
     return {{},
             Span{low.value, high.value, is_logarithmic(scale, low, place),
                  is_whole(key_, reference_.schema()), low.factor, low.unit}};
@@ -60,7 +62,8 @@ class RangeReader {
     if (scale == nullptr) return false;
     const std::string text = map_.text(*scale);
     if (text != "log" && text != "linear")
-      map_.place(*scale).fail(fmt::format("'{}' is not known; expected linear or log", text));
+      map_.place(*scale).fail(
+          fmt::format("'{}' is not known; expected linear, log or powers_of_two", text));
     if (text == "log" && !(low.value > 0)) at.fail("a log scale begins above 0");
     return text == "log";
   }
@@ -92,6 +95,19 @@ class RangeReader {
       value.value = to_digits(low.value + k * step, 12);
       domain.values.push_back(normal_value(key_, value.text(), reference_, map_.place(entry)));
     }
+    return domain;
+  }
+
+  /// Those of base units, such as bytes: sizes that exist.
+  Domain powers_of_two(const SweepNumber& low, const SweepNumber& high, const Place& at) const {
+    Domain domain;
+    for (double base = 1; base <= high.value * low.factor; base *= 2) {
+      if (base < low.value * low.factor) continue;
+      SweepNumber value = low;
+      value.value = base / low.factor;
+      domain.values.push_back(normal_value(key_, value.text(), reference_, at));
+    }
+    if (domain.values.empty()) at.fail("the range holds no power of two");
     return domain;
   }
 

@@ -25,7 +25,7 @@ struct Domain {
 };
 
 /// `[240, 370]`, `240`, `{ from: 100, to: 400, step: 10 }` or `{ from: 1, to: 16, scale: log }`
-/// (without step, scale is `linear` unless given).
+/// (without step, scale is `linear` unless given; `powers_of_two` names those of the range).
 /// @param entry  of the map
 Domain read_domain(const SweepKey& key, const YamlMap& map, const YamlMap::Entry& entry,
                    platform::PlatformFile& reference);

@@ -171,7 +171,8 @@ class ParameterReader {
 
 std::string text_of(const SweepRow& row) {
   std::vector<std::string> parts;
-  for (const auto& [name, value] : row) parts.push_back(fmt::format("{}={}", name, value));
+  for (const auto& [name, value] : row)
+    parts.push_back(fmt::format("{}={}", name, without_count_unit(value)));
   return fmt::format("{}", fmt::join(parts, " "));
 }
 
@@ -239,7 +240,8 @@ ResolvedPoint resolve(const SweepPlan& plan, const SweepRow& settings, SweepInpu
 
 std::string SweepPoint::settings_text() const {
   std::vector<std::string> parts;
-  for (const PointParameter& p : parameters) parts.push_back(fmt::format("{}={}", p.name, p.text));
+  for (const PointParameter& p : parameters)
+    parts.push_back(fmt::format("{}={}", p.name, without_count_unit(p.text)));
   return fmt::format("{}", fmt::join(parts, " "));
 }
 

@@ -9,6 +9,7 @@
 
 #include "platform_models/loader/parameter_units.h"
 #include "tools/app/study/sweep/pareto_front.h"
+#include "tools/app/study/sweep/sweep_key.h"
 #include "tools/app/table/terminal_table.h"
 
 namespace leviosim::tools {
@@ -125,11 +126,10 @@ std::string beside_first(const std::vector<SweepOutcome>& outcomes, const SweepO
 
 std::string readable_setting(const std::string& value) {
   const auto measure = platform::split_measure(value);
-  if (!measure || measure->unit.empty()) return value;
-  const std::string number = value.substr(0, value.find_first_not_of("+-.0123456789eE"));
-  const bool is_count =
-      measure->unit == "units" || measure->unit == "banks" || measure->unit == "cores";
-  return is_count ? number : fmt::format("{} {}", number, measure->unit);
+  const std::string count = without_count_unit(value);
+  if (!measure || measure->unit.empty() || count != value) return count;
+  return fmt::format("{} {}", value.substr(0, value.find_first_not_of("+-.0123456789eE")),
+                     measure->unit);
 }
 
 Table sweep_front(const SweepStore& store) {

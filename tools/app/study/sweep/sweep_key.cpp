@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "platform_models/loader/instruction_set.h"
+#include "platform_models/loader/parameter_units.h"
 #include "sim/base/nearest_name.h"
 #include "tools/app/cli/command_line.h"
 #include "tools/app/run/run_options.h"
@@ -151,6 +152,13 @@ std::string normal_value(const SweepKey& key, const std::string& text,
     default:
       return value;  // names of files: checked when they are opened
   }
+}
+
+std::string without_count_unit(const std::string& value) {
+  const auto measure = platform::split_measure(value);
+  const bool is_count = measure && (measure->unit == "units" || measure->unit == "banks" ||
+                                    measure->unit == "cores" || measure->unit == "ways");
+  return is_count ? value.substr(0, value.size() - measure->unit.size()) : value;
 }
 
 }  // namespace leviosim::tools

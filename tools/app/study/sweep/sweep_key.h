@@ -64,4 +64,7 @@ SweepNumber number_of(const SweepKey& key, const std::string& text,
 /// A number of the chip in its reference unit. @param base  in base units
 SweepNumber chip_number(const SweepKey& key, double base, platform::PlatformFile& reference);
 
+/// "4units" → "4": what is counted says the name of the parameter. Others as they are.
+std::string without_count_unit(const std::string& value);
+
 }  // namespace leviosim::tools

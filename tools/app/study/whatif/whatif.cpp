@@ -147,6 +147,7 @@ constexpr const char* kWorkers = "platform.cluster.workers";
 constexpr const char* kEventUnit = "platform.cluster.max_workers";
 constexpr const char* kL1Size = "platform.cluster.l1.size";
 constexpr const char* kBase = "platform.isa.base";
+constexpr std::string_view kCodePath = "isa.code";
 
 void raise(Variant& variant, const char* key, const std::string& value) {
   variant.settings[key] = value;
@@ -204,6 +205,11 @@ void WhatIf::expect_known(const std::string& change, const SweepRow& settings) {
           fmt::format("{}: scaling between technologies is not modelled; expected numbers of "
                       "another chip, such as area.…, energy.… and supply.…",
                       change));
+    if (path == kCodePath && settings.count(kBase) == 0)
+      throw InputError(fmt::format(
+          "{}: says how the workload was compiled, which is nothing of the chip alone; expected "
+          "isa.base={}, the instruction set with its costs and its code",
+          change, value));
     if (schema.find(path) == platform::Schema::kNone && path != platform::kBasePath)
       throw InputError(
           fmt::format("{}: unknown key{}", change, base::did_you_mean(path, schema.paths())));
