@@ -16,6 +16,7 @@
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
 #include "sim/base/sha256.h"
+#include "sim/outputs/try_again.h"
 
 namespace leviosim::outputs {
 namespace {
@@ -217,7 +218,8 @@ void write_file_atomically(const std::filesystem::path& file, std::string_view c
     if (error == 0 && ::rename(staging.c_str(), file.c_str()) != 0) error = errno;
     if (error != 0) ::unlink(staging.c_str());
   }
-  if (error != 0) throw InputError(fmt::format("{}: cannot be written: {}", shown, reason(error)));
+  if (error != 0)
+    fail_writing(error, fmt::format("{}: cannot be written: {}", shown, reason(error)));
 }
 
 }  // namespace leviosim::outputs

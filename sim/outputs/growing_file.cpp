@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "sim/base/error.h"
+#include "sim/outputs/try_again.h"
 
 namespace leviosim::outputs {
 namespace {
@@ -103,8 +104,7 @@ void add_lines(const fs::path& path, base::InputKind kind, std::chrono::millisec
       continue;
     }
     if (!file && error == EWOULDBLOCK)
-      throw InputError(
-          fmt::format("{}: another program adds to it; try again later", path.string()));
+      throw TryAgain(fmt::format("{}: another program adds to it; try again later", path.string()));
     if (!file) break;
     struct stat status {};
     if (::fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink > 1)

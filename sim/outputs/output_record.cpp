@@ -11,6 +11,7 @@
 
 #include "sim/base/error.h"
 #include "sim/outputs/growing_file.h"
+#include "sim/outputs/try_again.h"
 
 namespace leviosim::outputs {
 namespace {
@@ -275,14 +276,14 @@ void HeldRecord::clear() {
 }
 
 void HeldRecord::fail(int error) const {
-  throw InputError(fmt::format("{}: cannot be written: {}", path_.string(), reason(error)));
+  fail_writing(error, fmt::format("{}: cannot be written: {}", path_.string(), reason(error)));
 }
 
 HeldRecord shared_record(const fs::path& folder) {
   HeldRecord record(folder, kPatience);
   if (record.state() == HeldRecord::State::busy)
-    throw InputError(fmt::format("{}: another process holds it; try again when that has ended",
-                                 (folder / kRecordName).string()));
+    throw TryAgain(fmt::format("{}: another process holds it; try again when that has ended",
+                               (folder / kRecordName).string()));
   return record;
 }
 

@@ -8,6 +8,7 @@
 #include <cerrno>
 
 #include "sim/base/error.h"
+#include "sim/outputs/try_again.h"
 
 namespace leviosim::outputs {
 namespace fs = std::filesystem;
@@ -23,7 +24,7 @@ StagingFolder::StagingFolder(const fs::path& target, const std::string& shown,
   constexpr int kMostTrials = 100;
   bool is_held = false;
   for (int trial = 0; !is_held && trial < kMostTrials; ++trial) is_held = acquire(shown, patience);
-  if (!is_held) throw InputError(fmt::format("{}: others keep writing it", shown));
+  if (!is_held) throw TryAgain(fmt::format("{}: others keep writing it", shown));
   const FolderContents left = contents_of(path_);
   if (!left.is_ours())
     throw InputError(fmt::format(
@@ -38,7 +39,7 @@ StagingFolder::StagingFolder(const fs::path& target, const std::string& shown,
 /// @returns false if it has to be tried again
 bool StagingFolder::acquire(const std::string& shown, std::chrono::milliseconds patience) {
   if (::mkdir(path_.c_str(), 0777) != 0 && errno != EEXIST)
-    throw InputError(fmt::format("{}: cannot be created: {}", shown, reason(errno)));
+    fail_writing(errno, fmt::format("{}: cannot be created: {}", shown, reason(errno)));
   folder_ = Descriptor(::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
   if (!folder_ && errno == ENOENT) return false;
   if (!folder_)
@@ -47,8 +48,8 @@ bool StagingFolder::acquire(const std::string& shown, std::chrono::milliseconds 
         path_.string(), reason(errno)));
   record_.emplace(path_, patience);
   if (record_->state() == HeldRecord::State::busy)
-    throw InputError(fmt::format("{}: another leviosim is writing it: it holds {}", shown,
-                                 (path_ / kRecordName).string()));
+    throw TryAgain(fmt::format("{}: another leviosim is writing it: it holds {}", shown,
+                               (path_ / kRecordName).string()));
   struct stat held {};
   const std::optional<struct stat> there = status_of(path_);
   return record_->state() == HeldRecord::State::held && ::fstat(folder_.get(), &held) == 0 &&

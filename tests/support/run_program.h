@@ -193,8 +193,9 @@ inline std::string screen_fault(const std::string& text) {
 }
 
 /// The program refused: exit status 2 and one message, which contains all parts.
-inline void expect_refused(const ProgramResult& result, const std::vector<std::string>& parts) {
-  EXPECT_EQ(result.status, 2) << result.err;
+inline void expect_refused(const ProgramResult& result, const std::vector<std::string>& parts,
+                           int status = 2) {
+  EXPECT_EQ(result.status, status) << result.err;
   EXPECT_EQ(result.out, "");
   EXPECT_EQ(result.err.rfind("leviosim: ", 0), 0u) << result.err;
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;

@@ -118,6 +118,9 @@ TEST_F(HostileOutputs, RecordsOfOtherNamesAreNotWritten) {
   }
 }
 
+/// What schedulers try again on.
+constexpr int kTryAgain = 75;
+
 TEST_F(HostileOutputs, LocksOfOthersEndInAMessageOrASignal) {
   write_text(place_ / ".leviosim-files", "leviosim files 1\n");
   const outputs::Descriptor held(::open(place(".leviosim-files").c_str(), O_RDWR));
@@ -134,7 +137,7 @@ TEST_F(HostileOutputs, LocksOfOthersEndInAMessageOrASignal) {
     if (program.running()) program.send(SIGKILL);
     const ProgramResult result = program.wait();
     if (signal == 0)
-      expect_refused(result, {".leviosim-files", "another process holds it"});
+      expect_refused(result, {".leviosim-files", "another process holds it"}, kTryAgain);
     else
       EXPECT_EQ(result.status, 128 + signal);
     EXPECT_EQ(picture_of(place_.path()).size(), 1u);

@@ -178,7 +178,7 @@ TEST_F(Outputs, ASecondWriterIsRefusedAtOnce) {
   ASSERT_TRUE(first);
   const Scratch other_log;
   expect_refused(run_program(other_log.path(), run_words("toc")),
-                 {"--out", "another leviosim is writing it", ".toc.leviosim"});
+                 {"--out", "another leviosim is writing it", ".toc.leviosim"}, 75);
   first->send(SIGCONT);
   EXPECT_EQ(first->wait().status, 0);
   EXPECT_EQ(picture_of(folder_.path()).count("toc/run.json"), 1u);

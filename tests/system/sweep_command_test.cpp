@@ -462,6 +462,47 @@ TEST_F(SweepCommand, ATaskThatSlurmKillsAndQueuesAgainMakesTheSameRun) {
   EXPECT_EQ(csv("queued/all"), csv("undisturbed"));
 }
 
+TEST_F(SweepCommand, SnakemakeMakesOneRun) {
+  if (std::system("snakemake --version >/dev/null 2>&1") != 0)  // NOLINT: as above
+    GTEST_SKIP() << "snakemake is not installed; apt-get install snakemake";
+  ASSERT_EQ(shell(fmt::format("snakemake --snakefile {} --cores 2 --config plan=plan.yaml "
+                              "out=snakemake shares=3",
+                              example("Snakefile"))),
+            0)
+      << base::read_text_file(folder_ / "shell.txt");
+  EXPECT_EQ(csv("snakemake/all"), csv("whole"));
+}
+
+/// Of a folder, of folders with shares, and of none; the rest is divided by the time that it takes.
+TEST_F(SweepCommand, StatusSaysWhatIsDoneAndHowLongTheRestTakes) {
+  const auto status = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"sweep", path("plan.yaml"), "--status", "--json"});
+    const ProgramResult result = run_program(folder_, words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return Json::parse(result.out);
+  };
+  const Json before = status({"--out", path("nowhere")});
+  EXPECT_EQ(before["done"], 0);
+  EXPECT_EQ(before["open"], before["points"]);
+  EXPECT_GT(before["seconds_a_point"], 0);
+  EXPECT_EQ(before["shares"], 1) << "a task of ten minutes holds them all";
+  EXPECT_GT(status({"--task-minutes", "1e-6"})["shares"], 1);
+  const Json whole = status({"--out", path("whole")});
+  EXPECT_EQ(whole["done"], whole["points"]);
+  EXPECT_TRUE(whole["seconds_a_point"].is_null());
+  ASSERT_EQ(run_program(folder_, {"sweep", path("plan.yaml"), "--shard", "1/2", "--out",
+                                  path("parts/one"), "--cache", path("cache-parts"), "--quiet"})
+                .status,
+            1)
+      << "a point cannot run";
+  const Json half = status({"--out", path("parts")});
+  EXPECT_GT(half["done"], 0);
+  EXPECT_EQ(half["done"].get<int>() + half["open"].get<int>(), half["points"].get<int>());
+  EXPECT_FALSE(fs::exists(folder_ / "nowhere"));
+  expect_refused(run_program(folder_, {"sweep", path("plan.yaml"), "--task-minutes", "5"}),
+                 {"--task-minutes", "--status"});
+}
+
 TEST_F(SweepCommand, GnuParallelMakesOneRun) {
   if (std::system("parallel --version 2>/dev/null | grep -q GNU") != 0)  // NOLINT: as above
     GTEST_SKIP() << "GNU parallel is not installed";

@@ -264,7 +264,7 @@ TEST_F(SweepPlans, ParametersAreShownAsTheyAreWhereNothingSetsThem) {
   EXPECT_EQ(all.points[0].settings_text(),
             fmt::format("platform.cluster.clock=100MHz platform.cluster.fpu.mapping=dynamic "
                         "workload.window={} profile=levio size=160x120 platform.cluster.workers="
-                        "8cores cores=8 seed=1",
+                        "8 cores=8 seed=1",
                         window));
   EXPECT_EQ(all.points[1].settings_text(),
             "platform.cluster.clock=370MHz platform.cluster.fpu.mapping=fixed workload.window=4 "

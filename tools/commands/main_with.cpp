@@ -17,6 +17,7 @@
 
 #include "sim/base/error.h"
 #include "sim/base/interruption.h"
+#include "sim/outputs/try_again.h"
 #include "tools/app/cli/exit_status.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/screen.h"
@@ -27,17 +28,18 @@ namespace leviosim::tools {
 namespace {
 
 constexpr int kBadInput = 2;
+constexpr int kTryAgain = 75;  // EX_TEMPFAIL of sysexits.h
 constexpr int kStopsBisecting = 128;
 constexpr int kSignalled = 128;  // and its number; seen if the signal does not end the process
 
-int fail(const std::exception& error) {
+int fail(const std::exception& error, int status = kBadInput) {
   try {
     flush_results();  // what was done is shown all the same
   } catch (const std::exception&) {
     // It cannot be; if that is the error, it is said below.
   }
   print_error(error.what());
-  return kBadInput;
+  return status;
 }
 
 /// Takes none.
@@ -148,6 +150,8 @@ int run_program(const Words& typed) {
     flush_results();
     if (!memory_ended()) throw_if_interrupted();
     return status;
+  } catch (const outputs::TryAgain& error) {
+    return fail(error, kTryAgain);
   } catch (const InputError& error) {
     return fail(error);
   } catch (const EndsWith& end) {
@@ -167,7 +171,8 @@ int run_program(const Words& typed) {
 /// `git bisect run` takes 2 for a bad commit, and stops at others.
 int status_for_git(const Words& typed, int status) {
   const bool is_asked = !typed.empty() && typed.front() == "bisect";
-  return is_asked && status == kBadInput ? kStopsBisecting : status;
+  const bool is_fault = status == kBadInput || status == kTryAgain;
+  return is_asked && is_fault ? kStopsBisecting : status;
 }
 
 void add(std::vector<Workload> workloads) {

@@ -32,6 +32,7 @@
 #include "tools/app/study/sweep/sweep_folder.h"
 #include "tools/app/study/sweep/sweep_front.h"
 #include "tools/app/study/sweep/sweep_inputs.h"
+#include "tools/app/study/sweep/sweep_status.h"
 #include "tools/app/study/sweep/sweep_store.h"
 #include "tools/app/table/terminal_table.h"
 
@@ -182,7 +183,9 @@ struct SweepWords {
   std::string budget;
   std::vector<std::string> merge;
   std::string report;
+  std::string task_minutes;
   bool list = false;
+  bool status = false;
   bool force = false;
   bool quiet = false;
   bool json = false;
@@ -315,12 +318,37 @@ bool has_failures(SweepStore& store) {
                      [](const SweepOutcome& o) { return !o.failure.empty(); });
 }
 
+/// --status, which writes nothing.
+void print_status(const SweepWords& words, const Sweep& sweep) {
+  constexpr const char* kTenMinutes = "10";
+  const double task_s =
+      60 * parse_positive("--task-minutes",
+                          words.task_minutes.empty() ? kTenMinutes : words.task_minutes);
+  const SweepStatus status = sweep_status(words.out, sweep.expansion.points, [&](std::size_t i) {
+    KnownRuns known;
+    run_point(resolve(sweep.plan, sweep.expansion.points[i].settings, sweep.inputs,
+                      fmt::format("{}: point {}", sweep.plan.file, i + 1)),
+              known);
+  });
+  const std::string text = status_text(status, words.plan, task_s);
+  const std::size_t answer = text.find('\n');
+  const std::string next = fmt::format("leviosim sweep {} --out {}", shell_word(words.plan),
+                                       words.out.empty() ? "swept" : shell_word(words.out));
+  print(printout(
+      words.json,
+      [&] { return Printout(text.substr(answer + 1)).ending(text.substr(0, answer), {next}); },
+      [&] { return json_text(status_json(status, task_s), 1) + '\n'; }));
+}
+
 void run_plan(const SweepWords& words) {
   SweepInputs inputs(fs::absolute(words.plan).parent_path(),
                      ProgressLine::style_of_stderr(words.quiet), trace_memory(words.memory));
   const SweepPlan plan = read_plan(words.plan, inputs);
   const Expansion expansion = expand(plan, inputs);
   if (words.list) return print(Printout(list_text(expansion), true));
+  if (words.status) return print_status(words, {plan, expansion, inputs});
+  if (!words.task_minutes.empty())
+    throw InputError("sweep: --task-minutes is for --status; expected both, or none");
   if (words.out.empty())
     throw InputError("sweep: --out is missing; expected a folder for the results");
   expect_json_or_budget(words.json, words.budget);
@@ -366,7 +394,7 @@ void run(const CLI::App& command, const SweepWords& words) {
     return;
   }
   for (const char* option :
-       {"PLAN", "--out", "--list", "--point", "--shard", "--budget", "--report"})
+       {"PLAN", "--out", "--list", "--status", "--point", "--shard", "--budget", "--report"})
     if (command.count(option) > 0)
       throw InputError(fmt::format("sweep: --merge OUT IN... takes no {}", option));
   merge(words);
@@ -384,6 +412,11 @@ Command add_sweep_command(CLI::App& app, const Words&) {
   add("--budget", words->budget, "FILE",
       "limits that every point has to meet; those with a sign are relative to point 1");
   command->add_flag("--list", words->list, "print the points with their numbers, run nothing");
+  command->add_flag(
+      "--status", words->status,
+      "say which part is done in --out DIR or its folders, and how long the rest takes");
+  add("--task-minutes", words->task_minutes, "N",
+      "status: length of tasks to share the rest in [10]");
   add("--point", words->point, "K", "run this point only");
   add("--shard", words->shard, "I/N", "run the I-th of N shares only");
   command
@@ -399,7 +432,8 @@ Command add_sweep_command(CLI::App& app, const Words&) {
   add_examples(*command,
                {"echo 'base: { trace: recorded }' >fpus.yaml",
                 "echo 'points: { grid: { platform.cluster.fpu.units: [1, 2, 4] } }' >>fpus.yaml",
-                "leviosim sweep fpus.yaml --list", "leviosim sweep fpus.yaml --out swept"});
+                "leviosim sweep fpus.yaml --list", "leviosim sweep fpus.yaml --status",
+                "leviosim sweep fpus.yaml --out swept"});
   add_json_option(*command, words->json);
   return {.app = command, .run = [=] { run(*command, *words); }, .goes_on = true};
 }

@@ -16,6 +16,7 @@
 #include "sim/outputs/growing_file.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/record/json_reader.h"
+#include "tools/app/study/sweep/sweep_key.h"
 #include "tools/app/table/table_files.h"
 
 namespace leviosim::tools {
@@ -310,7 +311,7 @@ const SweepStore::Settings& SweepStore::settings(int point) const {
 std::string SweepStore::settings_of(int point) const {
   std::string text;
   for (const auto& [name, value] : settings(point))
-    text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, value);
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, without_count_unit(value));
   return text;
 }
 

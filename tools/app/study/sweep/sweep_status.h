@@ -1,0 +1,38 @@
+// How far a sweep is and how long the rest takes: points that are done or open, and, timed on one
+// that is open, the shares that make tasks of a wanted length. Writes nothing.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/app/study/sweep/points.h"
+#include "tools/app/table/json.h"
+
+namespace leviosim::tools {
+
+struct SweepStatus {
+  std::int64_t points = 0;
+  std::int64_t done = 0;                  ///< with those that failed
+  std::int64_t failed = 0;                ///< done, but cannot run
+  std::optional<double> seconds_a_point;  ///< of one core of this host; none if nothing is open
+
+  std::int64_t open() const { return points - done; }
+  /// As many as make tasks of that length; at least 1.
+  std::int64_t shares(double task_seconds) const;
+};
+
+/// @param folder  of the sweep, or of folders with its shares; empty or missing: nothing is done
+/// @param time    computes an open point by its place in `points`
+/// @throws InputError for a sweep of other points
+SweepStatus sweep_status(const std::filesystem::path& folder, const std::vector<SweepPoint>& points,
+                         const std::function<void(std::size_t point)>& time);
+
+/// For people: the answer, and the shares. @param plan  as it was named
+std::string status_text(const SweepStatus& status, const std::string& plan, double task_seconds);
+Json status_json(const SweepStatus& status, double task_seconds);
+
+}  // namespace leviosim::tools
