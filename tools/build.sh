@@ -13,7 +13,9 @@ options=()
 # Once asked for, the engine of interactive pages is part of a build.
 if [[ -n ${LEVIOSIM_WASM:-} ]]; then options+=("-DLEVIOSIM_WASM=$LEVIOSIM_WASM"); fi
 if command -v ccache >/dev/null; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-if [[ $* != leviosim ]]; then
+if [[ $preset == python ]]; then
+  options+=(-DLEVIOSIM_BUILD_TESTS=OFF -DLEVIOSIM_BUILD_BENCHMARKS=OFF)
+elif [[ $* != leviosim ]]; then
   options+=(-DLEVIOSIM_BUILD_TESTS=ON)
 elif ! grep -qs '^LEVIOSIM_BUILD_TESTS:.*=ON' "build/$preset/CMakeCache.txt"; then
   options+=(-DLEVIOSIM_BUILD_TESTS=OFF)

@@ -71,6 +71,34 @@ class Module(unittest.TestCase):
         self.assert_same_files(leviosim.replay(folder, set=slow), again)
         self.assertEqual(run.replay(set=slow)["frame.latency.p50"], leviosim.replay(folder, set=slow)["frame.latency.p50"])
 
+    def test_a_folder_is_loaded_compared_checked_and_shown(self):
+        folder = os.path.join(FOLDER.name, "loaded")
+        done = command("run", "--data", DATA, "--frames", "0:12", "--record", "--out", folder, "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        loaded = leviosim.load(folder)
+        self.assertEqual(len(loaded.table("frames")["frame"]), 12)
+        self.assertEqual(len(loaded.trajectory[0]), 12)
+        slow = loaded.replay(set={"cluster.clock": "240MHz"})
+        found = leviosim.compare(loaded, slow)
+        self.assertEqual(found["figures"][0]["name"], "frame time, mean")
+        self.assertIn("another clock +", found["why"][0]["text"])
+        budget = os.path.join(FOLDER.name, "limits.yaml")
+        with open(budget, "w") as file:
+            file.write("budgets:\n  - limits: [L1 peak <= 1 kB, L2 peak <= 1 MB]\n")
+        self.assertEqual(leviosim.check(loaded, budget)["not_met"], 1)
+        self.assertIn(" ms</td>".replace(" ", "<td>"), loaded._repr_html_())
+        self.assertRegex(repr(loaded), r"<leviosim.Run of 12 frames, [0-9.]+ ms a frame>")
+        self.assertFalse([name for name in dir(leviosim) if name.startswith("_") and not name.startswith("__")])
+        self.assertNotIn("np", dir(leviosim))
+        with self.assertRaisesRegex(leviosim.InputError, "expected the folder of a run"):
+            leviosim.load(DATA + "-none")
+
+    def test_tune_finds_the_lowest_clock_that_meets_the_limits(self):
+        rows, lowest = leviosim.tune(leviosim.Platform("gap9"), ["370MHz", "50MHz"], fps=20, data=DATA, ate=1)
+        self.assertEqual(list(rows["clock"]), ["50MHz", "370MHz"])
+        self.assertEqual(lowest, "370MHz")
+        self.assertGreater(rows["missed_share"][0], 0.05)
+
     def test_a_native_run_leaves_the_files_of_the_command(self):
         folder = os.path.join(FOLDER.name, "native")
         done = command("run", "--native", "--profile", "next", "-p", "workload.window=6", "--data", DATA, "--out", folder)

@@ -4,14 +4,18 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-
 #include <memory>
 
 #include "platform_models/loader/loader.h"
 #include "sim/base/error.h"
 #include "sim/base/sha256.h"
 #include "sim/energy/area.h"
+#include "tools/app/budget/check.h"
+#include "tools/app/budget/check_report.h"
 #include "tools/app/cli/version.h"
+#include "tools/app/comparison/comparability.h"
+#include "tools/app/comparison/comparison.h"
+#include "tools/app/comparison/comparison_files.h"
 #include "tools/app/record/record.h"
 #include "tools/app/record/statistics.h"
 #include "tools/app/report/area_table.h"
@@ -177,6 +181,28 @@ std::string evaluate_files(const std::string& estimate, const std::string& truth
   return json_text(statistics_json(list.rows()));
 }
 
+/// "leviosim compare --format json" of two runs. @param allow  as --allow
+std::string compare_records(const std::string& a, const std::string& b, const std::string& allow) {
+  const py::gil_scoped_release unlocked;
+  RunRecord before = parse_record("a", a, Level::all);
+  RunRecord after = parse_record("b", b, Level::all);
+  before.name = "a";
+  after.name = "b";
+  return json_text(comparison_json(
+      compare_runs(before, after, check_comparable(before, after, parse_allowed(allow)))));
+}
+
+/// What a budget says of a run. @param baseline  text of a record; empty: none
+std::string check_record(const std::string& run, const std::string& budget,
+                         const std::string& baseline) {
+  const py::gil_scoped_release unlocked;
+  const RunRecord record = parse_record("run", run, Level::all);
+  const Budget limits = read_budget(budget);
+  std::optional<RunRecord> before;
+  if (!baseline.empty()) before = parse_record("baseline", baseline, Level::all);
+  return json_text(check_json(check_budget(record, limits, before ? &*before : nullptr, nullptr)));
+}
+
 py::list parameters_of(const platform::ResolvedPlatform& chip) {
   py::list rows;
   for (const platform::Parameter& p : chip.parameters) {
@@ -243,5 +269,7 @@ PYBIND11_MODULE(_core, m) {
   m.def("run", &tools::run);
   m.def("replay", &tools::replay_bytes);
   m.def("whatif_csv", &tools::what_if);
+  m.def("compare_json", &tools::compare_records);
+  m.def("check_json", &tools::check_record);
   m.def("evaluate_json", &tools::evaluate_files);
 }

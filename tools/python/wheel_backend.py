@@ -1,5 +1,5 @@
 """What `pip install .` calls (PEP 517): builds the preset python and packs the package as a wheel. It needs
-nothing but Python, CMake and the packages of `tools/setup.sh tests`."""
+nothing but Python, CMake, pybind11 and the packages of `tools/setup.sh`."""
 
 import base64
 import hashlib

@@ -17,10 +17,11 @@ from __future__ import annotations
 
 import io
 import csv
+import html
 import itertools
 import json
 import os
-from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -32,8 +33,12 @@ Progress = Callable[[int, int], None]
 Settings = Mapping[str, Union[str, int, float]]
 Table = Dict[str, np.ndarray]
 
-__all__ = ["InputError", "Platform", "Run", "Statistic", "evaluate", "platforms", "profiles", "replay", "run",
-           "sweep", "whatif", "workload_parameters"]
+__all__ = ["InputError", "Platform", "Run", "Statistic", "check", "compare", "evaluate", "load", "platforms",
+           "profiles", "replay", "run", "sweep", "tune", "whatif", "workload_parameters"]
+
+
+def __dir__() -> List[str]:
+    return sorted([*__all__, "__doc__", "__version__"])
 
 
 class Statistic(NamedTuple):
@@ -69,6 +74,19 @@ def _statistics(members: Dict[str, List[Any]]) -> Dict[str, Statistic]:
 
 def _words(settings: Settings) -> List[str]:
     return [f"{path}={value}" for path, value in settings.items()]
+
+
+# Of _repr_html_.
+_SHOWN = ("frame.time.mean", "frame.time.p99", "frame.time.worst", "frame.missed_share", "memory.l1.peak",
+          "memory.l2.peak", "energy.frame", "energy.mean_power", "accuracy.ate.rmse")
+
+
+def _in_words(rows: Iterable[Tuple[str, float, str]]) -> Iterator[Tuple[str, float, str]]:
+    """In the units that the commands print."""
+    shown = {"ns": (1e-6, "ms"), "byte": (1e-3, "kB"), "B": (1e-3, "kB"), "1": (100, "%")}
+    for what, value, unit in rows:
+        scale, name = shown.get(unit, (1, unit))
+        yield what, value * scale, name
 
 
 class Platform:
@@ -156,6 +174,35 @@ class Run(Mapping[str, Any]):
             raise InputError("the run holds no work.trace; expected run(..., record=True)")
         return bytes(self.files["work.trace"])  # type: ignore[arg-type]
 
+    def _repr_html_(self) -> str:
+        """For notebooks: what a run is asked for first."""
+        rows = [(s.description or s.name, s.value, s.unit) for s in map(self.statistics.get, _SHOWN) if s is not None]
+        cells = "".join(f"<tr><td>{html.escape(what)}</td><td style='text-align:right'>{value:.4g}</td>"
+                        f"<td>{html.escape(unit)}</td></tr>" for what, value, unit in _in_words(rows))
+        return f"<table>{cells}</table>"
+
+    def __repr__(self) -> str:
+        frame = self.statistics.get("frame.time.mean")
+        time = f", {frame.value * 1e-6:.2f} ms a frame" if frame else ""
+        return f"<leviosim.Run of {len(self.table('frames')['frame'])} frames{time}>"
+
+    def plot(self, axes: Any = None) -> Any:
+        """Latencies of all frames in ms, with the deadline; of a native run, its path from above. Needs matplotlib."""
+        try:
+            from matplotlib import pyplot
+        except ImportError:
+            raise InputError("plot() needs matplotlib: apt-get install python3-matplotlib, or pip install it") from None
+        axes = axes if axes is not None else pyplot.gca()
+        frames = self.table("frames")
+        if "latency_ns" in frames:
+            axes.plot(frames["frame"], frames["latency_ns"] * 1e-6)
+            axes.set(xlabel="frame", ylabel="latency, ms")
+        else:
+            positions = self.trajectory[1]
+            axes.plot(positions[:, 0], positions[:, 1])
+            axes.set(xlabel="x, m", ylabel="y, m", aspect="equal")
+        return axes
+
     def write(self, folder: str) -> None:
         """The files as the command leaves them, in a folder that is not there yet."""
         os.makedirs(folder)
@@ -163,6 +210,47 @@ class Run(Mapping[str, Any]):
             data = content if isinstance(content, bytes) else content.encode()
             with open(os.path.join(folder, name), "xb") as out:
                 out.write(data)
+
+
+def load(folder: str) -> Run:
+    """The run that a command or Run.write() left in a folder."""
+    files: Dict[str, Union[str, bytes]] = {}
+    try:
+        for name in sorted(os.listdir(folder)):
+            if not name.startswith(".") and name.endswith((".csv", ".json", ".tum", ".yaml", ".trace")):
+                with open(os.path.join(folder, name), "rb") as file:
+                    data = file.read()
+                files[name] = data if name == "work.trace" else data.decode()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{folder}: {getattr(error, 'strerror', None) or error}; expected the folder of a run") from None
+    if "run.json" not in files:
+        raise InputError(f"{folder}: holds no run.json; expected the folder of a run")
+    return Run(files)
+
+
+def compare(a: Run, b: Run, *, allow: Sequence[str] = ()) -> Dict[str, Any]:
+    """As `leviosim compare --format json`: figures, stages, and `why`. `allow`: what may differ besides the chip."""
+    return json.loads(_core.compare_json(a.files["run.json"], b.files["run.json"], ",".join(allow)))
+
+
+def check(run: Run, budget: str, *, baseline: Optional[Run] = None) -> Dict[str, Any]:
+    """As `leviosim check --json` with a file of limits: `not_met` counts, `findings` say where and why."""
+    return json.loads(_core.check_json(run.files["run.json"], os.fspath(budget), baseline.files["run.json"] if baseline else ""))
+
+
+def tune(platform: Platform, clocks: Sequence[str], *, fps: float, data: str = "synthetic", profile: str = "levio",
+         miss_rate: float = 0.05, ate: float = 0.2, seed: int = 1, frames: Optional[str] = None) -> Tuple[Table, Optional[str]]:
+    """Closed loops at clocks such as "240MHz", at the chip's voltage and for one seed; `leviosim tune` takes several seeds
+    and the lowest voltages. @returns a row per clock, and the lowest from which on all meet the limits"""
+    rows: List[Dict[str, Any]] = []
+    for clock in sorted(clocks, key=lambda text: float(text.rstrip("MHz"))):
+        chip = platform.with_({"cluster.clock": clock, "controller.clock": clock})
+        done = run(chip, data=data, profile=profile, fps=fps, deadline="drop", seed=seed, frames=frames)
+        rows.append({"clock": clock, "missed_share": done["frame.missed_share"], "ate_rmse_m": done["accuracy.ate.rmse"],
+                     "power_mw": done["energy.mean_power"], "frame_mean_ns": done["frame.time.mean"]})
+    met = [row["missed_share"] <= miss_rate and row["ate_rmse_m"] <= ate for row in rows]
+    lowest = next((rows[i]["clock"] for i in range(len(rows)) if all(met[i:])), None)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}, lowest
 
 
 def platforms() -> List[str]:
