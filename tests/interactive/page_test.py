@@ -147,7 +147,7 @@ class InteractivePage(unittest.TestCase):
         page = self.opened("next")
         counts = page.run("""(() => { const e = window.page.engine;
             const at = (lines) => { e.set(lines); return e.flight().statistics; };
-            return [at([]), at(['fps=200']), at([`fps=${window.page.setting.recordedRate}`])]; })()""")
+            return [at([]), at(['fps=200']), at([`fps=${1e9 / window.page.data.period_ns}`])]; })()""")
         recorded, fast, same = counts
         self.assertEqual(recorded, same)
         self.assertEqual(fast["run.frame_period"], 5_000_000)
@@ -187,6 +187,16 @@ class InteractivePage(unittest.TestCase):
         after = page.run("document.querySelector('.tiles').textContent")
         self.assertNotEqual(before, after)
         self.assertIn("cluster.clock", page.run("location.hash"))
+
+    def test_changes_have_a_price_accelerators_as_a_whole(self):
+        page = self.opened("next", "gap9-hamming=on&cluster.fpu.units=2&fps=40")
+        prices = page.run("[...document.querySelectorAll('.knob strong')].map((p) => p.textContent)")
+        self.assertEqual(len(prices), 3, prices)
+        self.assertIn("−", prices[0])  # fewer units
+        self.assertRegex(prices[2], r"\+.*mm²")
+        self.assertEqual(page.run("window.page.now.statistics['run.frame_period']"), 25_000_000)
+        self.assertNotIn("fps", page.run("window.page.setting.command()"))
+        self.assertEqual(page.complaints, [])
 
     def test_it_is_drawn_without_errors_requests_or_overflow(self):
         for width in (1280, 390):

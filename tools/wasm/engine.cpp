@@ -154,20 +154,13 @@ class Engine {
 
   Json frame(int number) { return outcome_json(timed_frame(number, chip_, settings_), false); }
 
-  /// What each setting adds: in area, and in energy and time of a frame.
-  Json prices(int number) {
-    const RunResult with = timed_frame(number, chip_, settings_);
-    Json prices = Json::object();
-    for (std::size_t i = 0; i < settings_.overrides.size(); ++i) {
-      Settings without = settings_;
-      without.overrides.erase(without.overrides.begin() + static_cast<std::ptrdiff_t>(i));
-      const platform::ResolvedPlatform chip = platform_.resolve(without.overrides);
-      const RunResult run = timed_frame(number, chip, without);
-      prices[settings_.overrides[i]] = {
-          {"area_mm2", area_mm2(chip_.config) - area_mm2(chip.config)},
-          {"energy_mj", energy_mj(with) - energy_mj(run)}};
-    }
-    return prices;
+  /// What the setting adds to another one: in area, and in energy of a frame.
+  Json price(int number, std::string_view other_lines) {
+    const Settings other = settings_of(other_lines);
+    const platform::ResolvedPlatform chip = resolved(other);
+    return {{"area_mm2", area_mm2(chip_.config) - area_mm2(chip.config)},
+            {"energy_mj", energy_mj(timed_frame(number, chip_, settings_)) -
+                              energy_mj(timed_frame(number, chip, other))}};
   }
 
  private:
@@ -282,7 +275,9 @@ LEVIOSIM_PAGE(load) std::size_t load(std::size_t trace_size) {
 LEVIOSIM_PAGE(set) std::size_t set() { return answer(g_engine->set(g_input)); }
 LEVIOSIM_PAGE(refusal) std::size_t refusal() { return answer(g_engine->refusal(g_input)); }
 LEVIOSIM_PAGE(frame) std::size_t frame(int number) { return answer(g_engine->frame(number)); }
-LEVIOSIM_PAGE(prices) std::size_t prices(int number) { return answer(g_engine->prices(number)); }
+LEVIOSIM_PAGE(price) std::size_t price(int number) {
+  return answer(g_engine->price(number, g_input));
+}
 LEVIOSIM_PAGE(flight) std::size_t flight(int everything) {
   return answer(g_engine->flight(everything != 0));
 }

@@ -96,7 +96,7 @@ std::string interactive_page(const std::string& run, Bytes memory) {
                          {"data", info.data},
                          {"frames", trace.frames()},
                          {"period_ns", info.frame_period_ns},
-                         {"knobs", knobs_json(platform.schema(), chip)},
+                         {"knobs", knobs_json(platform.schema(), chip, info.frame_period_ns)},
                          {"switches", switches_json(chip)},
                          {"mechanisms", mechanisms_json()},
                          {"chip", json_of(base::parse_yaml(info.platform_yaml))}};

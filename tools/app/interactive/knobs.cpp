@@ -86,14 +86,31 @@ Json knob_json(const platform::Field& field, const platform::Parameter& paramete
   return knob;
 }
 
+/// The rate of the camera, which is no parameter of the chip.
+Json camera_json(double recorded) {
+  Json knob{{"path", "fps"},
+            {"help", "frames that the camera delivers in a second; none is lost, they wait"},
+            {"unit", ""},
+            {"values", Json::array()}};
+  std::set<double> rates{recorded};
+  for (int rate = 5; rate <= std::max(120.0, 2 * recorded); rate += 5) rates.insert(rate);
+  for (const double rate : rates) {
+    if (rate == recorded) knob["recorded"] = knob["values"].size();
+    knob["values"].push_back(platform::number_text(rate));
+  }
+  return knob;
+}
+
 }  // namespace
 
-Json knobs_json(const platform::Schema& schema, const platform::ResolvedPlatform& chip) {
+Json knobs_json(const platform::Schema& schema, const platform::ResolvedPlatform& chip,
+                std::int64_t period_ns) {
   Json knobs = Json::array();
   for (const KnobRow& row : kKnobs)
     if (const platform::Parameter* parameter = find(chip, row.path))
       knobs.push_back(knob_json(schema.fields()[schema.find(row.path)], *parameter, row.steps,
                                 chip.config.supply));
+  knobs.push_back(camera_json(1e9 / static_cast<double>(period_ns)));
   return knobs;
 }
 

@@ -13,7 +13,6 @@ class InteractivePage {
     this.setting.read(location.hash.slice(1));
     this.state = {latencies: [], recorded: [], period_ns: data.period_ns, frame: this.setting.frame};
     this.bars = {};
-    this.prices = {};
     this.knobs = knobCards(this.setting, () => this.changed());
     this.parts = {
       verdict: element('div'),
@@ -152,7 +151,6 @@ class InteractivePage {
     history.replaceState(null, '', `#${this.setting.fragment()}`);
     this.parts.command.textContent = this.setting.command();
     this.parts.frame.value = this.setting.frame;
-    this.prices = {};
     this.state.frame = this.setting.frame;
     const runs = this.timeFrame();
     this.parts.sentence.textContent = runs ?
@@ -161,14 +159,13 @@ class InteractivePage {
     this.stages.redraw();
     this.rest = setTimeout(() => this.rested(runs), kRest);
     this.latency.redraw();
-    this.knobs.show(this.prices);
+    this.knobs.show();
   }
 
   /** @param runs  whether the setting does; else it is only asked which others do */
   rested(runs) {
-    this.prices = runs ? this.engine.prices(this.setting.frame) : {};
-    this.knobs.show(this.prices);
-    const period_ns = this.setting.rate === null ? this.data.period_ns : 1e9 / this.setting.rate;
+    if (runs) this.knobs.show((others) => this.engine.price(this.setting.frame, others));
+    const period_ns = this.setting.period_ns;
     const latencies = [];
     if (runs) Object.assign(this.state, {latencies, period_ns});
     this.flights.start(runs ? this.setting.lines() : null, this.knobs.questions(), {
@@ -186,7 +183,6 @@ class InteractivePage {
       },
       refusals: (refusals) => {
         this.knobs.answers(refusals);
-        this.knobs.show(this.prices);
         document.body.dataset.ready = this.setting.fragment();
       },
       failure: (text) => this.fail(text)

@@ -12,23 +12,27 @@ function priceText(price) {
 
 /** @param changed  called after every move */
 function knobCards(setting, changed) {
-  const views = setting.data.knobs.map((knob, i) => knobView(setting, knob, i, changed));
-  const switches = setting.data.switches.map((one, i) => switchView(setting, one, i, changed));
-  const camera = cameraView(setting, changed);
+  const {knobs, switches} = setting.data;
+  const views = knobs.map((knob, i) => knobView(setting, knob, i, changed));
+  const boxes = switches.map((one, i) => switchView(setting, one, i, changed));
   return {
-    nodes: [...views, camera, ...switches].map((view) => view.node),
-    /** @param prices  of lines, by line */
-    show(prices) {
-      for (const view of [...views, camera, ...switches]) view.show(prices);
+    nodes: [...views, ...boxes].map((view) => view.node),
+    /** @param price  (lines without a change) → what the change adds */
+    show(price = () => null) {
+      views.forEach((view, i) => view.show(
+          setting.at[i] === knobs[i].recorded ? null :
+                                                price(setting.lines({knob: [i, knobs[i].recorded]}))));
+      boxes.forEach((view, i) => view.show(
+          setting.on[i] ? price(setting.lines({switch: [i, false]})) : null));
     },
-    /** What can be asked for each value of each slider, and each switch. */
-    questions: () => [...setting.data.knobs.flatMap((knob, i) => knob.values.map(
-                          (_, at) => setting.chipLines({knob: [i, at]}))),
-                      ...setting.data.switches.map((_, i) => setting.chipLines({switch: i}))],
+    /** What can be asked for: each value of each slider, and each switch. */
+    questions: () => [...knobs.flatMap((knob, i) => knob.values.map(
+                          (_, at) => setting.lines({knob: [i, at]}))),
+                      ...switches.map((_, i) => setting.lines({switch: [i, true]}))],
     answers(refusals) {
       const rest = [...refusals];
-      views.forEach((view, i) => view.refuse(rest.splice(0, setting.data.knobs[i].values.length)));
-      switches.forEach((view) => view.refuse(rest.splice(0, 1)[0]));
+      views.forEach((view, i) => view.refuse(rest.splice(0, knobs[i].values.length)));
+      boxes.forEach((view) => view.refuse(rest.splice(0, 1)[0]));
     }
   };
 }
@@ -50,7 +54,9 @@ function knobView(setting, knob, i, changed) {
       changed();
     }
   });
-  function show(prices = {}) {
+  let paid = null;
+  function show(price = paid) {
+    paid = price;
     const at = setting.at[i];
     const text = knob.values[at];
     const refusal = refusals[at];
@@ -61,9 +67,8 @@ function knobView(setting, knob, i, changed) {
       mark.className = [n === at ? 'at' : '', refusals[n] ? 'cannot' : ''].join(' ').trim();
       mark.title = refusals[n] ? `${knob.values[n]}: ${refusals[n]}` : knob.values[n];
     });
-    const price = priceText(prices[`${knob.path}=${text}`]);
     note.replaceChildren(
-        knob.help, price ? element('strong', {}, ` ${price}`) : '',
+        knob.help, price ? element('strong', {}, ` ${priceText(price)}`) : '',
         refusal ? element('span', {class: 'status-bad'}, ` Cannot run: ${refusal}`) : '');
   }
   return {
@@ -90,13 +95,13 @@ function switchView(setting, one, i, changed) {
       changed();
     }
   });
-  function show(prices = {}) {
+  let paid = null;
+  function show(price = paid) {
+    paid = price;
     box.checked = setting.on[i];
     box.disabled = Boolean(refusal) && !setting.on[i];
-    const sum_of = (key) => sum(one.settings.map((line) => (prices[line] || {})[key]));
-    const price = priceText({area_mm2: sum_of('area_mm2'), energy_mj: sum_of('energy_mj')});
     note.replaceChildren(
-        one.help, price ? element('strong', {}, ` ${price}`) : '',
+        one.help, price ? element('strong', {}, ` ${priceText(price)}`) : '',
         refusal ? element('span', {class: 'status-bad'}, ` Cannot run: ${refusal}`) : '');
   }
   return {
@@ -108,38 +113,5 @@ function switchView(setting, one, i, changed) {
     node: element(
         'div', {class: 'knob'},
         element('label', {}, box, ` units of `, element('code', {}, one.name), ' '), note)
-  };
-}
-
-/** Frames come faster or slower; all are delivered and wait. */
-function cameraView(setting, changed) {
-  const value = element('output', {for: 'knob-camera'});
-  const slider = element('input', {
-    type: 'range',
-    id: 'knob-camera',
-    min: 5,
-    max: Math.max(120, Math.ceil(2 * setting.recordedRate)),
-    step: 1,
-    oninput: () => {
-      const rate = Number(slider.value);
-      setting.rate = rate === Math.round(setting.recordedRate) ? null : rate;
-      changed();
-    }
-  });
-  return {
-    show() {
-      slider.value = setting.rate ?? setting.recordedRate;
-      const recorded = numberText(setting.recordedRate);
-      value.textContent = setting.rate === null ?
-          `${recorded} frames/s` :
-          `${setting.rate} frames/s (recorded ${recorded})`;
-    },
-    node: element(
-        'div', {class: 'knob'},
-        element('div', {class: 'line'},
-                element('label', {for: 'knob-camera'}, element('code', {}, 'camera')), value),
-        slider,
-        element('p', {class: 'hint'},
-                'How often a frame comes: the deadline of each. None is lost, frames wait.'))
   };
 }

@@ -75,8 +75,13 @@ class ReplayEngine {
   frame(number) {
     return this.ask('frame', '', number);
   }
-  prices(number) {
-    return this.ask('prices', '', number);
+  /** What the setting adds to that of other lines; null if they cannot run. */
+  price(number, lines) {
+    try {
+      return this.ask('price', lines.join('\n'), number);
+    } catch {
+      return null;
+    }
   }
   /** @param everything  all statistics, and times on one core */
   flight(everything = false) {

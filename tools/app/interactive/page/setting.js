@@ -1,6 +1,8 @@
 // What the sliders and switches say, as lines for the engine, as a command, and in the address of
 // the page, which keeps it.
 
+const kCamera = 'fps=';
+
 class Setting {
   /** @param data  of the page: knobs, switches, run, period_ns */
   constructor(data) {
@@ -12,34 +14,32 @@ class Setting {
   reset() {
     this.at = this.data.knobs.map((knob) => knob.recorded);
     this.on = this.data.switches.map(() => false);
-    this.rate = null;  // of the camera; null: as recorded
   }
 
-  get recordedRate() {
-    return 1e9 / this.data.period_ns;
+  /** Between two frames, as the slider of the camera has it. */
+  get period_ns() {
+    const line = this.lines().find((text) => text.startsWith(kCamera));
+    return line ? 1e9 / Number(line.slice(kCamera.length)) : this.data.period_ns;
   }
   get isRecorded() {
     return this.lines().length === 0;
   }
 
-  /** Settings of the chip as -p takes them. @param other  {knob: [index, value], switch: index} */
-  chipLines(other = {}) {
+  /** As -p takes them. @param other  {knob: [index, value], switch: [index, on]} in their place */
+  lines(other = {}) {
     const lines = this.data.knobs.flatMap((knob, i) => {
       const at = other.knob && other.knob[0] === i ? other.knob[1] : this.at[i];
       return at === knob.recorded ? [] : [`${knob.path}=${knob.values[at]}`];
     });
     this.data.switches.forEach((one, i) => {
-      if (this.on[i] || other.switch === i) lines.push(...one.settings);
+      if (other.switch && other.switch[0] === i ? other.switch[1] : this.on[i])
+        lines.push(...one.settings);
     });
     return lines;
   }
 
-  lines(other = {}) {
-    return [...this.chipLines(other), ...(this.rate === null ? [] : [`fps=${this.rate}`])];
-  }
-
   command() {
-    const chip = this.chipLines();
+    const chip = this.lines().filter((line) => !line.startsWith(kCamera));
     return ['leviosim whatif', this.data.run, ...(chip.length > 0 ? [chip.join(',')] : [])].join(
         ' ');
   }
@@ -52,7 +52,6 @@ class Setting {
     this.data.switches.forEach((one, i) => {
       if (this.on[i]) parts.set(one.name, 'on');
     });
-    if (this.rate !== null) parts.set('fps', this.rate);
     parts.set('frame', this.frame);
     return parts.toString();
   }
@@ -66,8 +65,6 @@ class Setting {
       if (at >= 0) this.at[i] = at;
     });
     this.on = this.data.switches.map((one) => parts.get(one.name) === 'on');
-    const rate = Number(parts.get('fps'));
-    if (rate >= 1 && rate <= 1000) this.rate = rate;
     const frame = Number(parts.get('frame') ?? NaN);
     if (Number.isInteger(frame) && frame >= 0 && frame < this.data.frames) this.frame = frame;
   }
