@@ -136,7 +136,7 @@ TEST_F(Installed, ThePagesForPeopleAndShellsNameEveryCommandAndOption) {
          "COMP_WORDS=(leviosim run --dead) COMP_CWORD=2; _leviosim; echo \"${COMPREPLY[*]}\""),
       0)
       << log();
-  EXPECT_EQ(log(), "replay report\n--deadline\n");
+  EXPECT_EQ(log(), "replay report recording\n--deadline\n");
   EXPECT_EQ(sh("leviosim/bin/leviosim help --as latex"), 2);
   EXPECT_NE(log().find("expected man, bash, zsh, fish"), std::string::npos) << log();
 }

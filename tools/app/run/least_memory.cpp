@@ -1,5 +1,7 @@
 #include "tools/app/run/least_memory.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "sim/base/interruption.h"
@@ -49,6 +51,19 @@ std::optional<Bytes> least_l1(const RunRequest& request, Bytes from) {
     }
   }
   return std::nullopt;
+}
+
+std::string larger_memory(const RunRequest& request, const work::MemoryOverflow& overflow) {
+  if (overflow.memory() == "L2") return "a larger l2.size has more";
+  const Bytes all = request.platform.config.cluster.l1.size;
+  const bool is_odometry = vio::other_profile(request.profile) == nullptr;
+  const Bytes had = is_odometry ? l1_of(request, profile_of(request)) : all;
+  const std::optional<Bytes> least = least_l1(request, had);
+  const auto kib = [](Bytes size) { return (size.count() + 1023) / 1024; };
+  if (least && *least <= all)
+    return fmt::format("workload.l1={}KiB is the least that works", kib(*least));
+  if (least) return fmt::format("cluster.l1.size={}KiB is the least that works", kib(*least));
+  return "a larger cluster.l1.size has more";
 }
 
 }  // namespace leviosim::tools

@@ -1,16 +1,22 @@
-// The least L1 in which the work of a request fits: what a user asks for whom a smaller one refuses.
+// The least L1 in which the work of a request fits: what a user asks for whom a smaller one
+// refuses.
 #pragma once
 
 #include <optional>
+#include <string>
 
+#include "sim/work/arena.h"
 #include "tools/app/run/run_request.h"
 
 namespace leviosim::tools {
 
-/// In whole KiB, by the same plans as a run: the work is done natively in ever larger memories, each
-/// larger by what was missing in the one before, until all frames pass.
+/// In whole KiB, by the same plans as a run: the work is done natively in ever larger memories,
+/// each larger by what was missing in the one before, until all frames pass.
 /// @param from  that is too small
 /// @return nothing where no size up to 16 MiB works, and of workloads that are not the odometry
 std::optional<Bytes> least_l1(const RunRequest& request, Bytes from);
+
+/// How to have more of the memory that overflowed: "workload.l1=18KiB is the least that works".
+std::string larger_memory(const RunRequest& request, const work::MemoryOverflow& overflow);
 
 }  // namespace leviosim::tools

@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "sim/base/error.h"
 #include "sim/soc/simulation.h"
 #include "sim/work/arena.h"
 #include "tools/app/run/least_memory.h"
-#include "tools/app/run/live_source.h"
 #include "tools/app/run/recording_source.h"
 #include "tools/app/run/run_observer.h"
 #include "tools/app/run/run_source.h"
@@ -152,20 +150,6 @@ std::string advice_on_size(const RunRequest& request) {
       "(-p workload.cell=N), fewer features of each (-p workload.features_per_cell=N), or a "
       "smaller image",
       size.width, size.height, features(size), extractor.per_cell, extractor.cell);
-}
-
-/// How to have a memory with more room.
-std::string larger_memory(const RunRequest& request, const work::MemoryOverflow& overflow) {
-  if (overflow.memory() == "L2") return "a larger l2.size has more";
-  const Bytes all = request.platform.config.cluster.l1.size;
-  const bool is_odometry = vio::other_profile(request.profile) == nullptr;
-  const Bytes had = is_odometry ? l1_of(request, profile_of(request)) : all;
-  const std::optional<Bytes> least = least_l1(request, had);
-  const auto kib = [](Bytes size) { return (size.count() + 1023) / 1024; };
-  if (least && *least <= all)
-    return fmt::format("workload.l1={}KiB is the least that works", kib(*least));
-  if (least) return fmt::format("cluster.l1.size={}KiB is the least that works", kib(*least));
-  return "a larger cluster.l1.size has more";
 }
 
 RunResult run_on_chip(const RunRequest& request, const ProgressCallback& progress) {
