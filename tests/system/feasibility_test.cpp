@@ -132,7 +132,7 @@ TEST_F(Feasible, StagesRefuseChipsOnWhichARunIsRefused) {
   const traces::testing::TempFolder log;
   const auto stages = [&](std::vector<std::string> further) {
     std::vector<std::string> words{"platforms", "stages",   "--data", folder_.string(),
-                                   "--quiet",   "--frames", "0:12"};
+                                   "--quiet",   "--frames", "0:36"};
     words.insert(words.end(), further.begin(), further.end());
     return testing::run_program(log.path(), words);
   };
@@ -148,7 +148,7 @@ TEST_F(Feasible, SystemsStandBesideWhatIsPredicted) {
   const traces::testing::TempFolder log;
   const auto systems = [&](std::vector<std::string> further) {
     std::vector<std::string> words{"platforms", "systems",  "--data", folder_.string(),
-                                   "--quiet",   "--frames", "0:12"};
+                                   "--quiet",   "--frames", "0:36"};
     words.insert(words.end(), further.begin(), further.end());
     return testing::run_program(log.path(), words);
   };

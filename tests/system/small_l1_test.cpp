@@ -114,7 +114,7 @@ TEST(SmallL1, HasTheSamePosesOfLargerImages) {
 // A stack of memory that what a stage needs at random does not fit into says what is missing.
 TEST(SmallL1, OfWhichNothingFitsIsRefusedWithStageAndBlock) {
   try {
-    fly(flight_of(160), profile_named("levio", 1), 8, Bytes(16 * 1024));
+    fly(flight_of(160), profile_named("levio", 1), 8, Bytes(4 * 1024));
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("feature extraction"), std::string::npos)

@@ -216,7 +216,7 @@ TEST_F(TraceLimitsOfPrograms, TransfersNeedTheMemoryThatTheyReach) {
   write("external.trace",
         trace_of_frame(gap9_parts(), kNoSeries, frame_facts(4) + list(0, "") + list(1, iteration)));
   expect_refused(program({"replay", path("external.trace"), "--cores", "1", "--platform",
-                          "cortex-m7", "--quiet", "--out", path("o")}),
+                          "cortex-m4f", "--quiet", "--out", path("o")}),
                  {"external memory"});
 }
 

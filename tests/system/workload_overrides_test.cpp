@@ -6,6 +6,7 @@
 #include "tests/support/run_program.h"
 #include "tools/app/record/statistic_list.h"
 #include "tools/app/run/run_request.h"
+#include "traces/synthesis/synthetic.h"
 #include "workload/vio/profile.h"
 
 namespace leviosim::tools {
@@ -105,12 +106,12 @@ TEST(WorkloadOverrides, ReachTheRunAndItsManifest) {
 }
 
 TEST(WorkloadOverrides, ABudgetOfL1IsASmallerL1) {
-  const AslFolder data;
   const TempFolder folder;
+  traces::write_synthetic_flight(folder / "flight", {.duration_s = 1, .texel_m = 0.02});
   const auto run = [&](const std::string& out, const std::string& set) {
     return run_program(folder.path(),
-                       {"run", "--data", data.root().string(), "--size", "96x72", "--platform",
-                        "gap9", "--out", (folder / out).string(), "--quiet", "-p", set});
+                       {"run", "--data", (folder / "flight").string(), "--platform", "gap9",
+                        "--out", (folder / out).string(), "--quiet", "-p", set});
   };
   const auto table = [&](const std::string& file) { return base::read_text_file(folder / file); };
   for (const auto& [out, set] : {std::pair{"budget", "workload.l1=32KiB"},
@@ -126,12 +127,12 @@ TEST(WorkloadOverrides, ABudgetOfL1IsASmallerL1) {
 
 /// An L1 in which nothing works: the least that does is said, and does.
 TEST(WorkloadOverrides, ATooSmallL1IsToldTheLeastThatWorks) {
-  const AslFolder data;
   const TempFolder folder;
+  traces::write_synthetic_flight(folder / "flight", {.duration_s = 1, .texel_m = 0.02});
   const auto run = [&](const std::string& set) {
     return run_program(folder.path(),
-                       {"run", "--data", data.root().string(), "--size", "96x72", "--platform",
-                        "gap9", "--out", (folder / "out").string(), "--quiet", "-p", set});
+                       {"run", "--data", (folder / "flight").string(), "--platform", "gap9",
+                        "--out", (folder / "out").string(), "--quiet", "--force", "-p", set});
   };
   const ProgramResult small = run("cluster.l1.size=4KiB");
   expect_refused(small, {"feature extraction", "is the least that works"});

@@ -71,7 +71,7 @@ Arrows used_arrows(const fs::path& project, const Arrows& rooms, std::vector<std
       // What runs on the measured processor is built by a script; the others are the program, what
       // others see of its library, and the Python module.
       if (folder.rfind("tools/rv32", 0) == 0 || folder == "tools" || folder == "tools/python" ||
-          folder == "tools/wasm")
+          folder.rfind("tools/wasm", 0) == 0)
         continue;
       const std::string room = room_of(folder, rooms);
       if (rooms.count(room) == 0) {

@@ -113,7 +113,8 @@ TEST(Record, HasOneReaderAndOneWriter) {
   EXPECT_EQ(files_with("parse_record\\(|record_of_json\\("),
             (Files{"app/record/record.h", "app/record/record.cpp", "app/run/run_folder.cpp",
                    "app/budget/gate.h", "app/budget/gate.cpp", "app/history/history.cpp",
-                   "app/study/outcome_cache.cpp", "app/study/sweep/sweep_store.cpp"}))
+                   "app/study/outcome_cache.cpp", "app/study/sweep/sweep_store.cpp",
+                   "python/module.cpp"}))
       << "a file that holds records";
 }
 

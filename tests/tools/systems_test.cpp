@@ -78,6 +78,7 @@ std::vector<SystemRow> example_systems() {
   here.frame = sim::Estimate<Joules>{Joules(0.00151)};
   here.power->down[0] = here.power->up[0] = Watts(0.01);
   here.memory = "7 kB short of L1 at 'x'";
+  here.fits = false;
   rows[3].here = here;
   return rows;
 }

@@ -3,7 +3,7 @@
 
 /** @param state  {now, recorded: outcomes of the frame} @param mechanisms  key → {column} */
 function stageBars(state, mechanisms) {
-  const colours = new Colours();
+  const colours = new Colours(kMechanismPalette);
   const columns = [...new Set(Object.values(mechanisms).map((m) => m.column).filter(Boolean))];
   columns.forEach((column) => colours.of(column));
   const sums = (stage, column) => sum(Object.entries(stage ? stage.parts : {})
