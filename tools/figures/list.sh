@@ -126,17 +126,17 @@ cut 'table peak | rows ^feature ^triangulation "L2  "'
 figure seeds
 needs data
 shows 'leviosim ablate --data euroc/MH_01_easy_t05_t20 --profile levio,next --seed 1,2,3,4,5,6,7,8 --out seeds'
-cut 'sed "/^  /d" | table sequence profile runs "absolute [m]" "least … greatest"'
+cut 'sed "/^  /d" | table sequence profile runs diverged "absolute [m]" least greatest'
 
 figure ablation
 needs data
 shows 'leviosim ablate --data euroc/MH_01_easy_t05_t20 --align sim3 --relative 2 --out ablated'
-cut 'sed "/^  /d" | table sequence profile runs "absolute [m]" "least … greatest"'
+cut 'sed "/^  /d" | table sequence profile runs diverged "absolute [m]" least greatest'
 
 figure flights-recorded
 needs data slow
 shows 'leviosim benchmark-flights recorded --motions euroc --out real'
-cut 'sed "/^  /d" | table profile profile piece set pieces "ATE %" "of pieces" "worst %" diverged'
+cut 'sed "/^  /d" | table profile profile piece set pieces "ATE %" from to "worst %" diverged'
 
 # platform_models/CHIPS.md
 figure chips
