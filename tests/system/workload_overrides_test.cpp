@@ -135,16 +135,37 @@ TEST(WorkloadOverrides, ATooSmallL1IsToldTheLeastThatWorks) {
                         "--out", (folder / "out").string(), "--quiet", "--force", "-p", set});
   };
   const ProgramResult small = run("cluster.l1.size=4KiB");
-  expect_refused(small, {"feature extraction", "is the least that works"});
+  expect_refused(small, {"feature extraction", "is the least in which a native run works"});
   const std::string before = "cluster.l1.size=";
   const std::size_t at = small.err.find(before, small.err.find("missing")) + before.size();
   const int least = std::stoi(small.err.substr(at));
   EXPECT_GT(least, 4);
-  expect_refused(run(before + std::to_string(least - 1) + "KiB"), {"is the least that works"});
+  expect_refused(run(before + std::to_string(least - 1) + "KiB"),
+                 {"is the least in which a native run works"});
   const ProgramResult fits = run(before + std::to_string(least) + "KiB");
   EXPECT_EQ(fits.status, 0) << fits.err;
-  expect_refused(run("workload.l1=4KiB"),
-                 {"workload.l1=" + std::to_string(least) + "KiB is the least that works"});
+  expect_refused(run("workload.l1=4KiB"), {"workload.l1=" + std::to_string(least) +
+                                           "KiB is the least in which a native run works"});
+}
+
+/// Also where frames come later to the chip's optimiser than natively.
+TEST(WorkloadOverrides, TheLeastL1OfANativeRunIsEnoughForTheChip) {
+  const TempFolder folder;
+  traces::write_synthetic_flight(folder / "flight", {.duration_s = 3, .texel_m = 0.02});
+  for (const char* profile : {"levio", "next"})
+    for (const char* frames : {"0:20", "30:60"}) {
+      const auto run = [&](int kib) {
+        return run_program(folder.path(), {"run", "--data", (folder / "flight").string(),
+                                           "--platform", "gap9", "--profile", profile, "--frames",
+                                           frames, "--out", (folder / "out").string(), "--quiet",
+                                           "--force", "-p", fmt::format("workload.l1={}KiB", kib)});
+      };
+      const std::string said = run(8).err;
+      const std::string before = "workload.l1=";
+      ASSERT_NE(said.find(before), std::string::npos) << said;
+      const int least = std::stoi(said.substr(said.find(before) + before.size()));
+      EXPECT_EQ(run(least).status, 0) << profile << ' ' << frames << ' ' << least;
+    }
 }
 
 TEST(WorkloadCommand, ListsProfilesAndParameters) {

@@ -36,21 +36,34 @@ void fly_in(const RunRequest& request, const vio::Profile& profile, Bytes l1) {
   }
 }
 
+/// What is missing in an L1; 0 if it is enough.
+Bytes missing_in(const RunRequest& request, const vio::Profile& profile, Bytes l1) {
+  try {
+    fly_in(request, profile, l1);
+    return Bytes(0);
+  } catch (const work::MemoryOverflow& overflow) {
+    return std::max(overflow.missing(), Bytes(1));
+  }
+}
+
 }  // namespace
 
 std::optional<Bytes> least_l1(const RunRequest& request, Bytes from) {
   if (vio::other_profile(request.profile) != nullptr) return std::nullopt;
   const vio::Profile profile = profile_of(request);
-  for (Bytes l1(from.count() / kKib * kKib + kKib); l1 <= kMostL1;) {
-    try {
-      fly_in(request, profile, l1);
-      return l1;
-    } catch (const work::MemoryOverflow& overflow) {
-      const std::int64_t missing = std::max<std::int64_t>(overflow.missing().count(), 1);
-      l1 += Bytes((missing + kKib - 1) / kKib * kKib);
-    }
+  const Bytes kib(kKib);
+  Bytes failed(from.count() / kKib * kKib);
+  Bytes works = failed + kib;
+  for (Bytes missing = missing_in(request, profile, works); missing > Bytes(0);
+       missing = missing_in(request, profile, works)) {
+    failed = works;
+    works += Bytes((missing.count() + kKib - 1) / kKib * kKib);
+    if (works > kMostL1) return std::nullopt;
   }
-  return std::nullopt;
+  // Tiles of another size may need less than was missing.
+  while (works - kib > failed && missing_in(request, profile, works - kib) == Bytes(0))
+    works -= kib;
+  return works;
 }
 
 std::string larger_memory(const RunRequest& request, const work::MemoryOverflow& overflow) {
@@ -61,8 +74,10 @@ std::string larger_memory(const RunRequest& request, const work::MemoryOverflow&
   const std::optional<Bytes> least = least_l1(request, had);
   const auto kib = [](Bytes size) { return (size.count() + 1023) / 1024; };
   if (least && *least <= all)
-    return fmt::format("workload.l1={}KiB is the least that works", kib(*least));
-  if (least) return fmt::format("cluster.l1.size={}KiB is the least that works", kib(*least));
+    return fmt::format("workload.l1={}KiB is the least in which a native run works", kib(*least));
+  if (least)
+    return fmt::format("cluster.l1.size={}KiB is the least in which a native run works",
+                       kib(*least));
   return "a larger cluster.l1.size has more";
 }
 

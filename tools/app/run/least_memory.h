@@ -11,12 +11,14 @@
 namespace leviosim::tools {
 
 /// In whole KiB, by the same plans as a run: the work is done natively in ever larger memories,
-/// each larger by what was missing in the one before, until all frames pass.
+/// each larger by what was missing in the one before, until all frames pass; then in smaller ones
+/// again, down to the last in which they do.
 /// @param from  that is too small
 /// @return nothing where no size up to 16 MiB works, and of workloads that are not the odometry
 std::optional<Bytes> least_l1(const RunRequest& request, Bytes from);
 
-/// How to have more of the memory that overflowed: "workload.l1=18KiB is the least that works".
+/// How to have more of the memory that overflowed: "workload.l1=18KiB is the least in which a
+/// native run works".
 std::string larger_memory(const RunRequest& request, const work::MemoryOverflow& overflow);
 
 }  // namespace leviosim::tools
