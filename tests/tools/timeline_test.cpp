@@ -293,14 +293,25 @@ double area_of(const std::string& svg, const std::string& colour) {
   return sum;
 }
 
-TEST(TimelinePicture, AreasOfWorkAndWaitsAreThoseOfTheCycles) {
-  MixedSource source({.frames = 1, .iteration = 5'000}, 8, 3);
+/// A run of so many frames, and its picture.
+struct DrawnRun {
+  explicit DrawnRun(int frames) {
+    MixedSource source({.frames = frames, .iteration = 5'000}, 8, 3);
+    request.cores = 8;
+    request.observer = &collector;
+    run = simulate_source(request, source, [](const Progress&) {});
+    svg = timeline_picture(collector.events(), run);
+  }
+
   RunRequest request = testing::request_at(Hertz(370'000'000), std::nullopt);
-  request.cores = 8;
-  TimelineCollector collector(request.platform.config, 8);
-  request.observer = &collector;
-  const RunResult run = simulate_source(request, source, [](const Progress&) {});
-  const std::string svg = timeline_picture(collector.events(), run);
+  TimelineCollector collector{request.platform.config, 8};
+  RunResult run;
+  std::string svg;
+};
+
+TEST(TimelinePicture, AreasOfWorkAndWaitsAreThoseOfTheCycles) {
+  const DrawnRun drawn(1);
+  const auto& [request, collector, run, svg] = drawn;
   EXPECT_EQ(testing::xml_fault(svg), "");
   EXPECT_EQ(svg, timeline_picture(collector.events(), run));
 
@@ -322,13 +333,8 @@ TEST(TimelinePicture, AreasOfWorkAndWaitsAreThoseOfTheCycles) {
 }
 
 TEST(TimelinePicture, OfTenFramesHasNoLabelsOnEachOtherAndAColourForEachStage) {
-  MixedSource source({.frames = 10, .iteration = 5'000}, 8, 3);
-  RunRequest request = testing::request_at(Hertz(370'000'000), std::nullopt);
-  request.cores = 8;
-  TimelineCollector collector(request.platform.config, 8);
-  request.observer = &collector;
-  const RunResult run = simulate_source(request, source, [](const Progress&) {});
-  const std::string svg = timeline_picture(collector.events(), run);
+  const DrawnRun drawn(10);
+  const auto& [request, collector, run, svg] = drawn;
   // On a line, from left to right: where each text ends if a letter is 6 px wide.
   std::map<std::string, std::map<double, double>> lines;
   const std::regex text(
