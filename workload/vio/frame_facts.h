@@ -34,13 +34,6 @@ enum class PoseState : std::uint8_t {
 inline constexpr std::array<std::string_view, 4> kPoseStateNames{"located", "predicted", "kept",
                                                                  "initialising"};
 
-/// Absent for other words.
-constexpr std::optional<PoseState> state_named(std::string_view name) {
-  for (std::size_t i = 0; i < kPoseStateNames.size(); ++i)
-    if (kPoseStateNames[i] == name) return static_cast<PoseState>(i);
-  return std::nullopt;
-}
-
 struct PoseSourceInfo {
   PoseSource source;
   std::string_view name;   ///< in files

@@ -19,8 +19,8 @@ struct Command {
   bool goes_on = false;       ///< the same command resumes after an interruption
 };
 
-/// Declares options that take text: names, variable, placeholder in the help, help text. Those of
-/// lists are repeatable. @param split  whether values of a list may be one word, "1,2,3"
+/// Declares options that take text: names, variable, how the help shows the value, help text. Those
+/// of lists are repeatable. @param split  whether values of a list may be one word, "1,2,3"
 struct TextOptions {
   CLI::App& command;
   std::string group{};  ///< heading in the help

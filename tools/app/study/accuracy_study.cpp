@@ -180,10 +180,6 @@ std::string error_text(const std::optional<double>& error, int decimals) {
   return figure_text(error, decimals, kDiverged);
 }
 
-Json figure_json(const std::optional<double>& figure) {
-  return figure ? rounded(*figure) : Json(nullptr);
-}
-
 RunRecord record_of(const RunOutcome& outcome) {
   RunRecord record;
   record.failure = outcome.failure;

@@ -67,8 +67,6 @@ std::optional<double> error_of(const RunOutcome& outcome);
 inline constexpr const char* kDiverged = "diverged";
 /// Of error_of() or a median of such, with so many decimals.
 std::string error_text(const std::optional<double>& error, int decimals);
-/// rounded(); null for nothing.
-Json figure_json(const std::optional<double>& figure);
 
 /// As it is kept, and back.
 RunRecord record_of(const RunOutcome& outcome);

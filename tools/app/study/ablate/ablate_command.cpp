@@ -1,11 +1,11 @@
-#include "tools/app/study/ablate/ablate_command.h"
-
+// The command `leviosim ablate`: its options, and what it leaves.
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include <limits>
 
 #include "sim/base/error.h"
+#include "tools/app/cli/command_line.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/study/ablate/ablation.h"
 #include "tools/app/study/ablate/ablation_table.h"

@@ -1,5 +1,4 @@
-#include "tools/app/study/flights/benchmark_flights_command.h"
-
+// The command `leviosim benchmark-flights`: its options and its files.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -8,6 +7,7 @@
 
 #include "sim/base/error.h"
 #include "sim/base/printable.h"
+#include "tools/app/cli/command_line.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/study/accuracy_study.h"
 #include "tools/app/study/batch_plan.h"

@@ -1,5 +1,4 @@
-#include "tools/app/study/sweep/sweep_report.h"
-
+// The command `leviosim sweep`, its report and its page.
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -13,6 +12,7 @@
 #include "sim/base/input_file.h"
 #include "sim/base/interruption.h"
 #include "sim/base/printable.h"
+#include "tools/app/cli/command_line.h"
 #include "tools/app/cli/exit_status.h"
 #include "tools/app/cli/host.h"
 #include "tools/app/cli/outputs.h"

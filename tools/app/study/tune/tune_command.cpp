@@ -1,5 +1,4 @@
-#include "tools/app/study/tune/tune_command.h"
-
+// The command `leviosim tune`: its options, its files, and the run that it recommends.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -8,6 +7,7 @@
 #include "sim/base/interruption.h"
 #include "sim/base/printable.h"
 #include "tools/app/budget/gate.h"
+#include "tools/app/cli/command_line.h"
 #include "tools/app/cli/printout.h"
 #include "tools/app/cli/version.h"
 #include "tools/app/record/record.h"
