@@ -196,6 +196,8 @@ class InteractivePage(unittest.TestCase):
         self.assertRegex(prices[2], r"\+.*mm²")
         self.assertEqual(page.run("window.page.now.statistics['run.frame_period']"), 25_000_000)
         self.assertNotIn("fps", page.run("window.page.setting.command()"))
+        said = page.run("document.body.textContent")
+        self.assertIn("With cluster.fpu.units=2, fps=40, units of gap9-hamming, frame", said)
         self.assertEqual(page.complaints, [])
 
     def test_it_is_drawn_without_errors_requests_or_overflow(self):

@@ -84,8 +84,8 @@ function sentence(setting, now, recorded, mechanisms) {
   if (setting.isRecorded) return 'The chip and the camera are as recorded: move a slider.';
   const [time, before] = [now, recorded].map((o) => ms(o.statistics['frame.time.mean']));
   const by = time - before;
-  const what = setting.lines().length > 3 ? `${setting.lines().length} settings` :
-                                            setting.lines().join(', ');
+  const names = setting.names();
+  const what = names.length > 3 ? `${names.length} settings` : names.join(', ');
   if (Math.abs(by) < 5e-4)
     return `With ${what}, frame ${setting.frame} takes as long as recorded, ${numberText(time)} ms.`;
   const why = changesOf(now, recorded)

@@ -25,12 +25,23 @@ class Setting {
     return this.lines().length === 0;
   }
 
-  /** As -p takes them. @param other  {knob: [index, value], switch: [index, on]} in their place */
-  lines(other = {}) {
-    const lines = this.data.knobs.flatMap((knob, i) => {
+  /** Of the sliders that are not as recorded. */
+  knobLines(other = {}) {
+    return this.data.knobs.flatMap((knob, i) => {
       const at = other.knob && other.knob[0] === i ? other.knob[1] : this.at[i];
       return at === knob.recorded ? [] : [`${knob.path}=${knob.values[at]}`];
     });
+  }
+
+  /** For people: a switch by its name, whatever it sets. */
+  names() {
+    const on = this.data.switches.filter((_, i) => this.on[i]).map((one) => `units of ${one.name}`);
+    return [...this.knobLines(), ...on];
+  }
+
+  /** As -p takes them. @param other  {knob: [index, value], switch: [index, on]} in their place */
+  lines(other = {}) {
+    const lines = this.knobLines(other);
     this.data.switches.forEach((one, i) => {
       if (other.switch && other.switch[0] === i ? other.switch[1] : this.on[i])
         lines.push(...one.settings);
