@@ -14,7 +14,7 @@ namespace leviosim::tools {
 namespace {
 
 using testing::ProgramResult;
-using Words = std::vector<std::string>;
+using CommandLine = std::vector<std::string>;
 
 /// A second of flight, recorded as `run`; `run`, `flight` and other names are of its folder.
 class DeadEnds : public tests::ProgramSuite {
@@ -39,15 +39,15 @@ class DeadEnds : public tests::ProgramSuite {
 
 struct Question {
   const char* name;
-  Words words;
+  CommandLine words;
   int status;
-  Words says;         ///< in what is printed, whichever stream
-  Words then = {};    ///< what was named works
-  Words unsaid = {};  ///< what it must not say
+  CommandLine says;         ///< in what is printed, whichever stream
+  CommandLine then = {};    ///< what was named works
+  CommandLine unsaid = {};  ///< what it must not say
 };
 
 std::vector<Question> questions() {
-  const Words l1{"-p", "cluster.workers=16", "-p", "cluster.max_workers=16"};
+  const CommandLine l1{"-p", "cluster.workers=16", "-p", "cluster.max_workers=16"};
   return {
       {"where do I begin", {}, 0, {"leviosim demo"}},
       {"are sixteen cores worth it",
@@ -134,8 +134,9 @@ std::vector<Question> questions() {
 }
 
 /// With the paths of what lies in the suite's folder.
-Words placed(const Words& words, const std::function<std::string(const std::string&)>& path) {
-  Words all = words;
+CommandLine placed(const CommandLine& words,
+                   const std::function<std::string(const std::string&)>& path) {
+  CommandLine all = words;
   for (std::size_t i = 1; i < all.size(); ++i)
     if (all[i] == "run" || all[i] == "flight" || all[i] == "cache" || all[i].ends_with(".yaml") ||
         words[i - 1] == "--out")

@@ -19,11 +19,11 @@ using tests::picture_of;
 using tests::Scratch;
 using tests::write_text;
 using Picture = std::map<std::string, std::string>;
-using Words = std::vector<std::string>;
+using CommandLine = std::vector<std::string>;
 
 struct OutputCommand {
   std::string name;
-  Words words;           ///< without the output
+  CommandLine words;     ///< without the output
   std::string option;    ///< that names the output
   std::string out;       ///< name of the output; a folder if it has no extension
   bool adds_to = false;  ///< what it wrote before
@@ -59,13 +59,13 @@ struct Inputs {
   std::string path(const std::string& name) const { return (folder / name).string(); }
 
   std::vector<OutputCommand> commands() const {
-    const Words batch{"--data",    flight,  "--relative", "0.0001",      "--seed", "1",
-                      "--profile", "levio", "--cache",    path("cache"), "--quiet"};
-    const auto with = [](Words words, const Words& more) {
+    const CommandLine batch{"--data",    flight,  "--relative", "0.0001",      "--seed", "1",
+                            "--profile", "levio", "--cache",    path("cache"), "--quiet"};
+    const auto with = [](CommandLine words, const CommandLine& more) {
       words.insert(words.end(), more.begin(), more.end());
       return words;
     };
-    const Words data{"--data", flight, "--quiet"};
+    const CommandLine data{"--data", flight, "--quiet"};
     return {
         {"run", with({"run", "--native"}, data), "--out", "out"},
         {"flow", with({"flow", "--platform", "gap9"}, data), "--out", "out"},
@@ -213,7 +213,7 @@ TEST(OutputsProperty, NoCommandTouchesWhatItDidNotWrite) {
     const Scratch log;
     const Scratch own;
     const auto words = [&](const fs::path& out, bool force) {
-      Words all = command.words;
+      CommandLine all = command.words;
       all.insert(all.end(), {command.option, out.string()});
       if (force) all.push_back("--force");
       return all;

@@ -38,7 +38,7 @@ struct Flown {
   std::string trace;  ///< its work, where it was recorded
 };
 
-Flown fly(RunOptions options, const char* profile, bool record, const Words& words,
+Flown fly(RunOptions options, const char* profile, bool record, const CommandLine& words,
           ProgressLine::Style style) {
   options.profile = profile;
   RunRequest request = make_chip_request(options);
@@ -206,7 +206,7 @@ std::string screen(const Flown& levio, const Flown& next, const std::string& wha
                     printable(out), printable(page));
 }
 
-void run(RunOptions options, const Words& words) {
+void run(RunOptions options, const CommandLine& words) {
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   outputs::OutputFolder out(out_request(options));
   const Flown levio = fly(options, "levio", true, words, style);
@@ -228,7 +228,7 @@ void run(RunOptions options, const Words& words) {
 
 }  // namespace
 
-Command add_demo_command(CLI::App& app, const Words& words) {
+Command add_demo_command(CLI::App& app, const CommandLine& words) {
   CLI::App* command = app.add_subcommand(
       "demo", "Both profiles on the synthetic flight and a what-if, on a screen");
   const auto options = std::make_shared<RunOptions>();

@@ -51,7 +51,7 @@ Replay with_progress(const traces::WorkTrace& trace, const RunRequest& request,
   return replay(trace, request, shown_on(line));
 }
 
-void run(const CLI::App& command, ReplayOptions options, const Words& words) {
+void run(const CLI::App& command, ReplayOptions options, const CommandLine& words) {
   require(command, "TRACE", "the work.trace of a run with --record, or its folder");
   require(command, "--out", "a folder for the results");
   check_print_options(options, options.gate.budget);
@@ -82,7 +82,7 @@ void run(const CLI::App& command, ReplayOptions options, const Words& words) {
 
 }  // namespace
 
-Command add_replay_command(CLI::App& app, const Words& words) {
+Command add_replay_command(CLI::App& app, const CommandLine& words) {
   CLI::App* command =
       app.add_subcommand("replay", "Time the recorded work of a run on another chip");
   const auto options = std::make_shared<ReplayOptions>();

@@ -23,7 +23,7 @@ struct RunCommandOptions : RunOptions {
   std::string report;
 };
 
-void run(RunCommandOptions options, const Words& words) {
+void run(RunCommandOptions options, const CommandLine& words) {
   set_run_defaults(options);
   RunRequest request = make_request(options);
   check_print_options(options, options.gate.budget);
@@ -55,7 +55,7 @@ void run(RunCommandOptions options, const Words& words) {
 
 }  // namespace
 
-Command add_run_command(CLI::App& app, const Words& words) {
+Command add_run_command(CLI::App& app, const CommandLine& words) {
   CLI::App* command = app.add_subcommand("run", "Run the workload on a chip, or natively");
   const auto options = std::make_shared<RunCommandOptions>();
   add_run_options(*command, *options);

@@ -70,7 +70,7 @@ void fit(const RunOptions& options) {
       [&] { return json_text(factor_json(stages), 2) + '\n'; }));
 }
 
-void validate(const RunOptions& given, const Words& words) {
+void validate(const RunOptions& given, const CommandLine& words) {
   const RunOptions options = as_released(given);
   RunRequest request = make_chip_request(options);
   const std::optional<RunOptions> second = paper_keypoints(options);
@@ -109,7 +109,7 @@ void validate(const RunOptions& given, const Words& words) {
 
 }  // namespace
 
-Command add_validate_command(CLI::App& app, const Words& words) {
+Command add_validate_command(CLI::App& app, const CommandLine& words) {
   CLI::App* command =
       app.add_subcommand("validate", "Compare a run with the tables of the LEVIO paper");
   const auto options = std::make_shared<ValidateOptions>();

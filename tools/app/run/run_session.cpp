@@ -84,7 +84,8 @@ Manifest manifest_of_data(const RunRequest& request) {
   return manifest;
 }
 
-Manifest make_manifest(const RunOptions& options, const RunRequest& request, const Words& words) {
+Manifest make_manifest(const RunOptions& options, const RunRequest& request,
+                       const CommandLine& words) {
   Manifest manifest = manifest_of_data(request);
   manifest.command_line = words;
   manifest.data = options.data;
@@ -122,7 +123,7 @@ RunRequest replay_request(const traces::WorkTrace& trace, const RunOptions& opti
 }
 
 Manifest replay_manifest(const traces::WorkTrace& trace, const InputDigest& digest,
-                         const RunOptions& options, const Words& words) {
+                         const RunOptions& options, const CommandLine& words) {
   Manifest manifest;
   manifest.command_line = words;
   manifest.seed = trace.info().seed;

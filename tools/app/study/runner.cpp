@@ -62,13 +62,13 @@ unsigned parse_jobs(const std::string& jobs) {
   return jobs.empty() ? 0 : static_cast<unsigned>(parse_whole("--jobs", jobs, 1, kMostJobs));
 }
 
-void add_runner_options(CLI::App& command, RunnerWords& words, const std::string& noun) {
+void add_runner_options(CLI::App& command, RunnerArguments& words, const std::string& noun) {
   add_jobs_option(command, words.jobs, noun);
   TextOptions{command}("--cache", words.cache, "DIR",
                        fmt::format("where finished {}s are cached [user's cache]", noun));
 }
 
-RunnerOptions runner_options(const RunnerWords& words, const std::string& noun, bool quiet) {
+RunnerOptions runner_options(const RunnerArguments& words, const std::string& noun, bool quiet) {
   RunnerOptions options{.noun = noun,
                         .threads = parse_jobs(words.jobs),
                         .progress = ProgressLine::style_of_stderr(quiet)};

@@ -17,7 +17,7 @@ class App;
 namespace leviosim::tools {
 
 /// Options of a command, as typed.
-struct RunnerWords {
+struct RunnerArguments {
   std::string jobs;
   std::string cache;
 };
@@ -35,9 +35,9 @@ void add_jobs_option(CLI::App& command, std::string& jobs, const std::string& no
 unsigned parse_jobs(const std::string& jobs);
 
 /// --jobs and --cache. @param noun  what a point is called
-void add_runner_options(CLI::App& command, RunnerWords& words, const std::string& noun);
+void add_runner_options(CLI::App& command, RunnerArguments& words, const std::string& noun);
 /// @throws InputError naming the option
-RunnerOptions runner_options(const RunnerWords& words, const std::string& noun, bool quiet);
+RunnerOptions runner_options(const RunnerArguments& words, const std::string& noun, bool quiet);
 
 /// Points of a study.
 struct Tally {

@@ -25,6 +25,11 @@ std::string shown(const SweepOutcome& outcome, std::size_t k) {
                : "-";
 }
 
+/// "frame ms".
+std::string title_of(const Objective& objective) {
+  return fmt::format("{} {}", objective.title, objective.shown_unit);
+}
+
 std::string value_of(const SweepStore& store, int point, const std::string& key) {
   for (const auto& [name, value] : store.settings(point))
     if (name == key) return readable_setting(value);
@@ -73,7 +78,7 @@ Front front_of(const SweepStore& store) {
     if (values.size() > 1)
       front.objectives.push_back(k);
     else if (!values.empty() && *values.begin() != "-")
-      front.common.push_back(fmt::format("{} {}", kObjectives[k].title, *values.begin()));
+      front.common.push_back(fmt::format("{} {}", title_of(kObjectives[k]), *values.begin()));
   }
   return front;
 }
@@ -84,7 +89,7 @@ Table front_table(const SweepStore& store, const Front& front, std::size_t most)
   for (const std::string& title : front.titles) heads.push_back({.title = title});
   // Where the width is short, the last objectives go first, and what was set stays.
   for (const std::size_t k : front.objectives)
-    heads.push_back({.title = kObjectives[k].title, .rank = static_cast<int>(k) + 1});
+    heads.push_back({.title = title_of(kObjectives[k]), .rank = static_cast<int>(k) + 1});
   Table table(heads);
   for (std::size_t i = 0; i < std::min(front.points.size(), most); ++i) {
     const SweepOutcome& outcome = front.points[i];

@@ -20,7 +20,7 @@
 #include "tools/app/cli/version.h"
 #include "tools/app/html_report/report_option.h"
 #include "tools/app/html_report/study_page.h"
-#include "tools/app/record/statistic_list.h"
+#include "tools/app/result/run_figures.h"
 #include "tools/app/run/known_runs.h"
 #include "tools/app/run/max_memory.h"
 #include "tools/app/study/runner.h"
@@ -102,6 +102,11 @@ std::string title_of(const std::string& parameter) {
   return parameter.rfind(kPlatform, 0) == 0 ? parameter.substr(kPlatform.size()) : parameter;
 }
 
+bool is_objective(std::string_view statistic) {
+  return std::any_of(kObjectives.begin(), kObjectives.end(),
+                     [&](const Objective& o) { return o.statistic == statistic; });
+}
+
 /// Whether the points meet a budget. That they are done is then no good news of its own.
 void add_check(const SweepCheck& check, std::vector<StudyBox>& boxes) {
   constexpr std::string_view kPrefix = "verdict: ";
@@ -115,7 +120,6 @@ void add_check(const SweepCheck& check, std::vector<StudyBox>& boxes) {
 
 /// The data of the page, after the store has been published.
 Json sweep_page(SweepStore& store, const std::optional<SweepCheck>& check) {
-  constexpr double kNsToMs = 1e-6;
   const std::vector<std::string> parameters = store.parameter_names();
   StudyPage page;
   page.title = "A sweep";
@@ -134,35 +138,25 @@ Json sweep_page(SweepStore& store, const std::optional<SweepCheck>& check) {
   const auto setup = [](std::string title, std::string key) -> Head {
     return {.title = std::move(title), .key = std::move(key), .is_setup = true};
   };
-  const auto figure = [](const char* title, const char* key, const char* unit,
-                         double scale = 1) -> Head {
-    return {.title = title, .key = key, .unit = unit, .scale = scale};
-  };
   page.columns = {setup("point", "point")};
   for (const std::string& name : parameters) page.columns.push_back(setup(title_of(name), name));
-  Head completion = figure("completion", "accuracy.completion", "%", 100);
-  completion.more_is_better = true;
-  for (const Head& head :
-       std::vector<Head>{figure("mean frame", "objective.frame_time", "ms"),
-                         figure("energy per frame", "objective.energy", "mJ"),
-                         figure("L1 peak", "objective.l1_peak", "kB", 1e-3),
-                         figure("position error (ATE)", "objective.ate", "m"),
-                         figure("area", "objective.area", "mm2"),
-                         figure("median latency", "frame.latency.p50", "ms", kNsToMs),
-                         figure("latency of 99 %", "frame.latency.p99", "ms", kNsToMs),
-                         figure("worst latency", "frame.latency.worst", "ms", kNsToMs),
-                         figure("missed frames", "frame.missed_share", "%", 100),
-                         figure("mean power", "energy.mean_power", "mW"),
-                         figure("power of the front end", "energy.front_end_power", "mW"),
-                         completion, figure("failure", "failure", "")})
-    page.columns.push_back(head);
-  if (!parameters.empty() && parameters.size() <= 2)
-    page.curves = {parameters.front(),
-                   parameters.size() == 2 ? parameters.back() : std::string(),
-                   {"objective.frame_time", "objective.energy", "objective.l1_peak",
-                    "objective.ate", "objective.area"}};
-  page.x = "objective.frame_time";
-  page.y = "objective.energy";
+  for (const Objective& o : kObjectives)
+    page.columns.push_back(
+        {.title = o.title, .key = o.figure, .unit = o.shown_unit, .scale = o.scale});
+  for (const FigureRow& row : figure_rows())
+    if (!is_objective(row.statistic) && !row.title.empty())
+      page.columns.push_back({.title = std::string(row.title),
+                              .key = std::string(row.statistic),
+                              .unit = std::string(row.title_unit),
+                              .scale = row.scale});
+  page.columns.push_back({.title = "failure", .key = "failure"});
+  if (!parameters.empty() && parameters.size() <= 2) {
+    page.curves = {
+        parameters.front(), parameters.size() == 2 ? parameters.back() : std::string(), {}};
+    for (const Objective& o : kObjectives) page.curves->y.push_back(o.figure);
+  }
+  page.x = kObjectives[0].figure;
+  page.y = kObjectives[1].figure;
   page.colour = parameters.size() > 1 ? parameters.back() : std::string();
   return study_report(page);
 }
@@ -173,12 +167,12 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kMostShards = 1'000'000;
 
-struct SweepWords {
+struct SweepArguments {
   std::string plan;
   std::string out;
   std::string point;
   std::string shard;
-  RunnerWords runner;
+  RunnerArguments runner;
   std::string memory;
   std::string budget;
   std::vector<std::string> merge;
@@ -192,7 +186,7 @@ struct SweepWords {
 };
 
 /// Numbers of the points that --point or --shard ask for.
-std::vector<std::size_t> chosen_points(const SweepWords& words, std::size_t count) {
+std::vector<std::size_t> chosen_points(const SweepArguments& words, std::size_t count) {
   std::vector<std::size_t> chosen;
   if (!words.point.empty()) {
     if (!words.shard.empty()) throw InputError("sweep: expected --point or --shard, not both");
@@ -267,7 +261,7 @@ Printout with_conclusion(std::string report, SweepStore& store, const std::strin
       .ending("in short: " + sweep_conclusion(store), after_sweep(store, folder));
 }
 
-void merge(const SweepWords& words) {
+void merge(const SweepArguments& words) {
   if (words.merge.size() < 2)
     throw InputError("--merge: expected OUT IN..., the folder to merge into and those to merge");
   for (std::size_t i = 1; i < words.merge.size(); ++i)
@@ -319,7 +313,7 @@ bool has_failures(SweepStore& store) {
 }
 
 /// --status, which writes nothing.
-void print_status(const SweepWords& words, const Sweep& sweep) {
+void print_status(const SweepArguments& words, const Sweep& sweep) {
   constexpr const char* kTenMinutes = "10";
   const double task_s =
       60 * parse_positive("--task-minutes",
@@ -340,7 +334,7 @@ void print_status(const SweepWords& words, const Sweep& sweep) {
       [&] { return json_text(status_json(status, task_s), 1) + '\n'; }));
 }
 
-void run_plan(const SweepWords& words) {
+void run_plan(const SweepArguments& words) {
   SweepInputs inputs(fs::absolute(words.plan).parent_path(),
                      ProgressLine::style_of_stderr(words.quiet), trace_memory(words.memory));
   const SweepPlan plan = read_plan(words.plan, inputs);
@@ -387,7 +381,7 @@ void run_plan(const SweepWords& words) {
   if (!is_met) throw LimitNotMet();
 }
 
-void run(const CLI::App& command, const SweepWords& words) {
+void run(const CLI::App& command, const SweepArguments& words) {
   if (words.merge.empty()) {
     require(command, "PLAN", "a file that says which points (tools/app/study/sweep/README.md)");
     run_plan(words);
@@ -402,10 +396,10 @@ void run(const CLI::App& command, const SweepWords& words) {
 
 }  // namespace
 
-Command add_sweep_command(CLI::App& app, const Words&) {
+Command add_sweep_command(CLI::App& app, const CommandLine&) {
   CLI::App* command = app.add_subcommand(
       "sweep", "Many chips, parameters, profiles, flights or seeds: all points of a plan");
-  const auto words = std::make_shared<SweepWords>();
+  const auto words = std::make_shared<SweepArguments>();
   const TextOptions add{*command};
   command->add_option("PLAN", words->plan, "YAML file: tools/app/study/sweep/README.md");
   add("--out", words->out, "DIR", "folder for the results; a sweep that it holds is continued");

@@ -71,7 +71,7 @@ ChosenRun run_again(const TunePlan& plan, const TunePoint& point) {
 }
 
 Manifest manifest_of(const TunePlan& plan, const TunePoint& point, const ChosenRun& run,
-                     const Words& command_line) {
+                     const CommandLine& command_line) {
   return make_manifest(run_options_of(plan, point), run.request, command_line);
 }
 
@@ -88,7 +88,8 @@ std::string head_of(const TunePlan& plan, std::size_t loops) {
                      plan.request.cores, plan.sequence.frames, printable(plan.options.data), loops);
 }
 
-Answer answer(const TuneOptions& options, const RunnerOptions& runner, const Words& command_line) {
+Answer answer(const TuneOptions& options, const RunnerOptions& runner,
+              const CommandLine& command_line) {
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const TunePlan plan = make_tune_plan(options, runner.progress);
   const std::vector<Point> runs = tune_runs(plan);
@@ -135,7 +136,7 @@ const Study kTune{
 
 }  // namespace
 
-Command add_tune_command(CLI::App& app, const Words& words) {
+Command add_tune_command(CLI::App& app, const CommandLine& words) {
   return add_study<TuneOptions>(app, words, kTune, declare, inputs_of, answer);
 }
 

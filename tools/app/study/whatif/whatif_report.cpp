@@ -113,7 +113,7 @@ SweepRow settings_of(const traces::WorkTrace& trace, const std::vector<std::stri
 }
 
 /// levio over the shipped flight on GAP9, as the demonstration runs it.
-std::string recorded_flight(const Words& words, ProgressLine::Style style) {
+std::string recorded_flight(const CommandLine& words, ProgressLine::Style style) {
   RunOptions options;
   options.platform = "gap9";
   options.data = "synthetic";
@@ -126,19 +126,20 @@ std::string recorded_flight(const Words& words, ProgressLine::Style style) {
                        make_manifest(options, request, words));
 }
 
-/// The run that is asked about.
-struct Asked {
+/// The run that a what-if changes, and how to compute it again (empty where it cannot be).
+struct StudiedRun {
   std::string name;
   SweepRow again;
 };
 
-Asked asked_of(const std::string& run, SweepInputs& inputs, const Words& words,
-               ProgressLine::Style style) {
+StudiedRun studied_run(const std::string& run, SweepInputs& inputs, const CommandLine& words,
+                       ProgressLine::Style style) {
   if (run.empty()) {
-    Asked asked{"the shipped flight", {}};
-    const SweepInputs::Trace& trace = inputs.keep_trace(asked.name, recorded_flight(words, style));
-    asked.again = settings_of(*trace.work, {});
-    return asked;
+    StudiedRun studied{"the shipped flight", {}};
+    const SweepInputs::Trace& trace =
+        inputs.keep_trace(studied.name, recorded_flight(words, style));
+    studied.again = settings_of(*trace.work, {});
+    return studied;
   }
   const std::string file = trace_of(run);
   if (file.empty())
@@ -184,23 +185,23 @@ std::string WhatIfOptions::run() const {
   return names_run ? words.front() : std::string();
 }
 
-Answer answer(const WhatIfOptions& typed, const RunnerOptions& runner, const Words& words) {
+Answer answer(const WhatIfOptions& typed, const RunnerOptions& runner, const CommandLine& words) {
   const std::string name = typed.run();
   const std::vector<std::string> changes = typed.changes();
   SweepInputs inputs(std::filesystem::current_path(), runner.progress, trace_memory(typed.memory));
   // Refused before a flight is drawn, which takes a while.
   for (const std::string& change : changes)
     if (change.find('=') == std::string::npos) inputs.platform(change, {change});
-  const Asked asked = asked_of(name, inputs, words, runner.progress);
-  WhatIf what_if(inputs, asked.name, asked.again);
+  const StudiedRun studied = studied_run(name, inputs, words, runner.progress);
+  WhatIf what_if(inputs, studied.name, studied.again);
   std::vector<Variant> variants;
   for (const std::string& change : changes)
     for (Variant& variant : what_if.variants(change)) variants.push_back(std::move(variant));
   const bool advises = changes.empty();
   if (advises) variants = what_if.standard_variants();
   const std::vector<VariantResult> results = what_if.results(variants, runner);
-  const traces::WorkTrace& trace = *inputs.trace(asked.name, {asked.name}).work;
-  const std::string head = heading(asked.name, trace.info(), trace.frames());
+  const traces::WorkTrace& trace = *inputs.trace(studied.name, {studied.name}).work;
+  const std::string head = heading(studied.name, trace.info(), trace.frames());
   Answer answer{.parts = {head + (advises ? advice_text(results) : whatif_table(results))},
                 .conclusion = advises ? advice_conclusion(results) : whatif_conclusion(results),
                 .next = after(name, changes, results),
@@ -255,7 +256,7 @@ Table whatif_rows(const std::vector<VariantResult>& results) {
   return table_of(variant_columns(results), results);
 }
 
-Command add_whatif_command(CLI::App& app, const Words& words) {
+Command add_whatif_command(CLI::App& app, const CommandLine& words) {
   return add_study<WhatIfOptions>(
       app, words, kWhatIf, declare,
       [](const WhatIfOptions& options) {

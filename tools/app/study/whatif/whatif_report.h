@@ -16,6 +16,6 @@ std::string whatif_bars(const std::vector<VariantResult>& results);
 Table whatif_rows(const std::vector<VariantResult>& results);
 
 /// `leviosim whatif` (tools/commands/commands.h).
-Command add_whatif_command(CLI::App& app, const Words& words);
+Command add_whatif_command(CLI::App& app, const CommandLine& words);
 
 }  // namespace leviosim::tools
