@@ -47,12 +47,13 @@ void OutputFile::judge() const {
   if (!request().replace) refuse("exists; choose a new file, or --force to replace it");
 }
 
-std::optional<std::string> OutputFile::publish(std::string_view bytes) {
+std::optional<std::string> OutputFile::publish(const Content& content) {
   const std::string name = path().filename().string();
   StagingFolder staging(path(), request().shown(), kPatience);
-  if (const int error = staging.write(name, bytes)) refuse("cannot be written: " + reason(error));
+  FileState state;
+  if (const int error = staging.write(name, content, &state))
+    refuse("cannot be written: " + reason(error));
   HeldRecord record = shared_record(path().parent_path());
-  const FileState state = state_of_bytes(bytes);
   record.add(name, state);
   std::optional<std::string> elsewhere =
       put(staging, staging.path() / name, [&](const fs::path& file) {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "sim/outputs/output_place.h"
+#include "sim/outputs/spool.h"
 
 namespace leviosim::outputs {
 
@@ -19,7 +20,9 @@ class OutputFile : public OutputPlace {
   /// Writes the file and gives it its name. Once.
   /// @returns nothing, or why it has another name now, which the text tells
   /// @throws InputError if it cannot be written; Interrupted
-  [[nodiscard]] std::optional<std::string> publish(std::string_view bytes);
+  [[nodiscard]] std::optional<std::string> publish(const Content& content);
+  /// For what is collected before it is published.
+  Spool spool() const { return Spool(path().parent_path(), request().shown()); }
 
  private:
   void judge() const;

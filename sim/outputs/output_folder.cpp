@@ -93,8 +93,12 @@ void OutputFolder::reserve(std::uint64_t bytes) {
                        (bytes + kLeastReserve) / 1024, reason(error)));
 }
 
-void OutputFolder::write(const std::string& name, std::string_view bytes) {
-  const int error = staging_->write(name, bytes);
+Spool OutputFolder::spool(const std::string& name) const {
+  return Spool(staging_->path(), fmt::format("{}: {}", request().shown(), name));
+}
+
+void OutputFolder::write(const std::string& name, const Content& content) {
+  const int error = staging_->write(name, content);
   if (error != 0) refuse(fmt::format("{} cannot be written: {}", name, reason(error)));
 }
 

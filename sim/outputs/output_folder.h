@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/outputs/output_place.h"
+#include "sim/outputs/spool.h"
 #include "sim/outputs/staging_folder.h"
 
 namespace leviosim::outputs {
@@ -26,7 +27,9 @@ class OutputFolder : public OutputPlace {
   void reserve(std::uint64_t bytes);
   /// Writes a file, "chosen/run.json", with the folders to it. Each name once; several threads
   /// may. @throws InputError if that fails
-  void write(const std::string& name, std::string_view bytes);
+  void write(const std::string& name, const Content& content);
+  /// For what is collected before it is written here. @param name  for messages
+  Spool spool(const std::string& name) const;
   /// Gives the folder its name.
   /// @returns nothing, or why it has another name now, which the text tells
   [[nodiscard]] std::optional<std::string> commit();

@@ -8,6 +8,7 @@
 #include <cerrno>
 
 #include "sim/base/error.h"
+#include "sim/base/sha256.h"
 #include "sim/outputs/try_again.h"
 
 namespace leviosim::outputs {
@@ -69,16 +70,40 @@ StagingFolder::~StagingFolder() {
   ::rmdir(path_.c_str());
 }
 
-int StagingFolder::write(const std::string& name, std::string_view bytes) {
-  const FileState state = state_of_bytes(bytes);
+namespace {
+
+/// @param state  of what was written
+/// @returns 0, or the error
+int write_content(const Descriptor& file, const Content& content, FileState& state) {
+  constexpr std::size_t kTogether = 64 << 10;
+  base::Sha256 digest;
+  std::string waiting;  // short pieces are written together
+  int error = 0;
+  content.hand_to([&](std::string_view piece) {
+    digest.add(piece);
+    state.size += piece.size();
+    waiting += piece;
+    if (waiting.size() < kTogether) return;
+    if (error == 0) error = write_all(file.get(), waiting);
+    waiting.clear();
+  });
+  state.sha256 = digest.hex();
+  return error == 0 ? write_all(file.get(), waiting) : error;
+}
+
+}  // namespace
+
+int StagingFolder::write(const std::string& name, const Content& content, FileState* written) {
   const std::lock_guard<std::mutex> guard(mutex_);
   reserve_ = Descriptor();
   if (::faccessat(folder_.get(), name.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0) return EEXIST;
   Descriptor file;
   if (const int error = begin_file(file)) return error;
-  if (const int error = write_all(file.get(), bytes)) return error;
+  FileState state;
+  if (const int error = write_content(file, content, state)) return error;
   if (const int error = file.close()) return error;
   record_->add(name, state);
+  if (written != nullptr) *written = state;
   // Not before: a folder that the record does not lead to is taken for another's after a kill.
   if (const int error = make_folders(name)) return error;
   return end_file(name.c_str());

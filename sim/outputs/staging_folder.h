@@ -15,6 +15,7 @@
 #include <string>
 #include <string_view>
 
+#include "sim/outputs/content.h"
 #include "sim/outputs/file_system.h"
 #include "sim/outputs/output_record.h"
 
@@ -36,7 +37,8 @@ class StagingFolder {
   const std::filesystem::path& path() const { return path_; }
   /// Writes a file, "chosen/run.json", with the folders to it. Several threads may call it.
   /// @returns 0, or the error
-  int write(const std::string& name, std::string_view bytes);
+  /// @param state  set to what it holds; may be null
+  int write(const std::string& name, const Content& content, FileState* state = nullptr);
   /// Sets disk space aside until something is written. @returns 0, or the error
   int reserve(std::uint64_t bytes);
   /// Puts the record in order. @returns 0, or the error

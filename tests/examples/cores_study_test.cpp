@@ -44,7 +44,7 @@ const Columns<CoresRow>& cores_columns() {
   return columns;
 }
 
-Answer cores_answer(const StudyOptions& options, const RunnerOptions& runner, const CommandLine&) {
+Answer cores_answer(const StudyOptions& options, const RunnerOptions& runner, const Arguments&) {
   RunRequest request = make_chip_request(options);
   request.data = data_folder(options, runner.progress);
   ProgressLine line(runner.progress);
@@ -68,7 +68,7 @@ Answer cores_answer(const StudyOptions& options, const RunnerOptions& runner, co
   return answer;
 }
 
-Command add_cores_command(CLI::App& app, const CommandLine& words) {
+Command add_cores_command(CLI::App& app, const Arguments& words) {
   return add_study<StudyOptions>(
       app, words,
       {"cores", "A workload on one, two, four … cores", "chip", {"leviosim cores --data flight"}},
@@ -81,7 +81,7 @@ TEST(CoresStudy, IsOneFileAndLeavesCsvAndPage) {
   const std::string flight = folder / "flight";
   traces::write_synthetic_flight(flight, {.duration_s = 1, .texel_m = 0.01});
   CLI::App app;
-  const CommandLine words{"cores"};
+  const Arguments words{"cores"};
   const Command command = add_cores_command(app, words);
   const std::string csv = folder / "cores.csv";
   const std::string page = folder / "cores.html";

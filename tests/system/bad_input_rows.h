@@ -18,7 +18,7 @@ namespace leviosim::tools::bad_inputs {
 
 namespace fs = std::filesystem;
 using traces::testing::AslFolder;
-using CommandLine = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 /// Makes the row's files in the folder, or spoils the data.
 using Setup = std::function<void(const fs::path& folder, const AslFolder& data)>;
@@ -27,8 +27,8 @@ using Setup = std::function<void(const fs::path& folder, const AslFolder& data)>
 /// the trajectory of that run.
 struct Row {
   const char* name;
-  CommandLine words;
-  CommandLine message;  ///< parts of it
+  Arguments words;
+  Arguments message;  ///< parts of it
   Setup setup = {};
 };
 inline void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
@@ -60,8 +60,8 @@ inline Setup folder_with(const std::string& name, const std::string& contents) {
   };
 }
 
-inline CommandLine run(const CommandLine& more, const std::string& data = "@D") {
-  CommandLine words{"run", "--quiet", "--platform", "gap9", "--data", data};
+inline Arguments run(const Arguments& more, const std::string& data = "@D") {
+  Arguments words{"run", "--quiet", "--platform", "gap9", "--data", data};
   words.insert(words.end(), more.begin(), more.end());
   const auto by_default = [&](const char* option, const char* value) {
     if (std::find(words.begin(), words.end(), option) == words.end())
@@ -72,16 +72,16 @@ inline CommandLine run(const CommandLine& more, const std::string& data = "@D") 
   return words;
 }
 
-inline CommandLine on_platform() {
+inline Arguments on_platform() {
   return {"run", "--platform", "@F/p.yaml", "--data", "@D", "--size", "32x24", "--out", "@F/out"};
 }
 
-inline CommandLine with_plan() {
+inline Arguments with_plan() {
   return {"sweep", "@F/p.yaml", "--out", "@F/out", "--cache", "@F/cache"};
 }
 
-inline CommandLine eval(const std::string& estimate, const CommandLine& more = {}) {
-  CommandLine words{"eval", estimate, "@D"};
+inline Arguments eval(const std::string& estimate, const Arguments& more = {}) {
+  Arguments words{"eval", estimate, "@D"};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }

@@ -13,7 +13,7 @@ namespace leviosim::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using bad_inputs::CommandLine;
+using bad_inputs::Arguments;
 using bad_inputs::Row;
 using traces::testing::AslFolder;
 using traces::testing::TempFolder;
@@ -83,7 +83,7 @@ TEST_P(BadInputs, IsRefused) {
       const std::string text = filled_in(base::read_text_file(entry.path()));
       std::ofstream(entry.path(), std::ios::binary) << text;
     }
-  CommandLine words;
+  Arguments words;
   for (const std::string& word : row.words) words.push_back(filled_in(word));
   const auto before = listing(folder_.path());
   const auto data_before = listing(data_.root());

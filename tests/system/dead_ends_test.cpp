@@ -14,7 +14,7 @@ namespace leviosim::tools {
 namespace {
 
 using testing::ProgramResult;
-using CommandLine = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 /// A second of flight, recorded as `run`; `run`, `flight` and other names are of its folder.
 class DeadEnds : public tests::ProgramSuite {
@@ -39,15 +39,15 @@ class DeadEnds : public tests::ProgramSuite {
 
 struct Question {
   const char* name;
-  CommandLine words;
+  Arguments words;
   int status;
-  CommandLine says;         ///< in what is printed, whichever stream
-  CommandLine then = {};    ///< what was named works
-  CommandLine unsaid = {};  ///< what it must not say
+  Arguments says;         ///< in what is printed, whichever stream
+  Arguments then = {};    ///< what was named works
+  Arguments unsaid = {};  ///< what it must not say
 };
 
 std::vector<Question> questions() {
-  const CommandLine l1{"-p", "cluster.workers=16", "-p", "cluster.max_workers=16"};
+  const Arguments l1{"-p", "cluster.workers=16", "-p", "cluster.max_workers=16"};
   return {
       {"where do I begin", {}, 0, {"leviosim demo"}},
       {"are sixteen cores worth it",
@@ -134,9 +134,9 @@ std::vector<Question> questions() {
 }
 
 /// With the paths of what lies in the suite's folder.
-CommandLine placed(const CommandLine& words,
-                   const std::function<std::string(const std::string&)>& path) {
-  CommandLine all = words;
+Arguments placed(const Arguments& words,
+                 const std::function<std::string(const std::string&)>& path) {
+  Arguments all = words;
   for (std::size_t i = 1; i < all.size(); ++i)
     if (all[i] == "run" || all[i] == "flight" || all[i] == "cache" || all[i].ends_with(".yaml") ||
         words[i - 1] == "--out")

@@ -26,7 +26,7 @@ using tests::picture_of;
 using tests::read_text;
 using tests::Scratch;
 using tests::write_text;
-using CommandLine = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 using Picture = std::map<std::string, std::string>;
 
 /// Sampled: every one is tried where there are few, else the first, the last and some between.
@@ -51,7 +51,7 @@ std::vector<std::uint64_t> chosen(std::uint64_t calls) {
 /// folder has to hold the same each time.
 class FaultyProgram {
  public:
-  FaultyProgram(CommandLine words, const fs::path& folder) {
+  FaultyProgram(Arguments words, const fs::path& folder) {
     int ends[2] = {-1, -1};
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) std::abort();
     socket_ = outputs::Descriptor(ends[0]);
@@ -160,7 +160,7 @@ class FaultInjection : public tests::ProgramSuite {
   }
 
   /// All faults of a kind where there was `before`; the same command given again ends well.
-  static void try_all(const CommandLine& words, const std::string& kind, const fs::path& before,
+  static void try_all(const Arguments& words, const std::string& kind, const fs::path& before,
                       const std::string& where) {
     const Scratch place;
     fill(place.path(), before);
@@ -192,7 +192,7 @@ class FaultInjection : public tests::ProgramSuite {
   }
   /// Into a new place, and where results of before are replaced; files of others are in both.
   /// @param there  other files of both
-  static void try_all(const CommandLine& words, const Picture& there = {}) {
+  static void try_all(const Arguments& words, const Picture& there = {}) {
     const Scratch before;
     write_text(before / "thesis.tex", "mine");
     write_text(before / "notes/a", "mine");
@@ -225,9 +225,9 @@ TEST_F(FaultInjection, WhatIf) {
 /// A history is whole or as before: begun, and grown by a run.
 TEST_F(FaultInjection, HistoryAdd) {
   const auto words = [](const char* commit, const std::string& file) {
-    return CommandLine{"history", "add",      path("recorded"), "--file", file, "--commit",
-                       commit,    "--branch", "main",           "--time", "1",  "--subject",
-                       "s",       "--quiet"};
+    return Arguments{"history", "add",      path("recorded"), "--file", file, "--commit",
+                     commit,    "--branch", "main",           "--time", "1",  "--subject",
+                     "s",       "--quiet"};
   };
   try_all(words("c1", "history.jsonl"));
   expect_done(words("c0", path("history.jsonl")));

@@ -23,7 +23,7 @@ using tests::picture_of;
 using tests::read_text;
 using tests::Scratch;
 using tests::write_text;
-using CommandLine = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 class HostileOutputs : public tests::ProgramSuite {
  protected:
@@ -38,24 +38,24 @@ class HostileOutputs : public tests::ProgramSuite {
                "base: { trace: recorded }\n"
                "points: { grid: { platform.cluster.clock: [200, 370] } }\n");
   }
-  static CommandLine run(const std::string& out, const CommandLine& further = {}) {
-    CommandLine words{"run",     "--native", "--data", path("flight"), "--size", "32x24",
-                      "--quiet", "--out",    out};
+  static Arguments run(const std::string& out, const Arguments& further = {}) {
+    Arguments words{"run",     "--native", "--data", path("flight"), "--size", "32x24",
+                    "--quiet", "--out",    out};
     words.insert(words.end(), further.begin(), further.end());
     return words;
   }
-  CommandLine report(const std::string& file) const {
+  Arguments report(const std::string& file) const {
     return {"report", path("ready"), "-o", place(file)};
   }
   std::string place(const std::string& name) const { return (place_ / name).string(); }
   /// Refused, and nothing is changed, left or gone.
-  void expect_kept(const CommandLine& words, const std::vector<std::string>& parts) const {
+  void expect_kept(const Arguments& words, const std::vector<std::string>& parts) const {
     const auto before = picture_of(place_.path());
     expect_refused(program(words), parts);
     EXPECT_EQ(picture_of(place_.path()), before);
   }
   /// Words of commands with outputs in the place.
-  std::vector<CommandLine> commands() const {
+  std::vector<Arguments> commands() const {
     return {
         run(place("out")),
         {"sweep", path("plan.yaml"), "--quiet", "--cache", place("cache"), "--out", place("sweep")},
@@ -64,7 +64,7 @@ class HostileOutputs : public tests::ProgramSuite {
          place("c.xml")}};
   }
   /// In a shell, behind other words of it.
-  ProgramResult in_shell(const std::string& before, const CommandLine& words) const {
+  ProgramResult in_shell(const std::string& before, const Arguments& words) const {
     std::string line = before + " '" + tests::program_path() + "'";
     for (const std::string& word : words) line += " '" + word + "'";
     line += fmt::format(" >'{}/out' 2>'{}/err'", log_.path().string(), log_.path().string());
@@ -109,7 +109,7 @@ TEST_F(HostileOutputs, RecordsOfOtherNamesAreNotWritten) {
   for (const char* folder : {".out.leviosim", "sweep", ""}) {
     fs::create_directory(place_ / folder);
     fs::create_hard_link(place_ / "mine", place_ / folder / ".leviosim-files");
-    for (const CommandLine& words : commands())
+    for (const Arguments& words : commands())
       if (std::string(folder).empty()
               ? words[0] == "report" || words[0] == "check"
               : words.back().ends_with(fs::path(folder).stem().string().substr(*folder == '.')))
@@ -190,7 +190,7 @@ TEST_F(HostileOutputs, RecordsOfManyLinesTakeLittle) {
 
 TEST_F(HostileOutputs, ALimitOfFileSizesIsAFullDisk) {
   for (const int kib : {1, 4, 16, 40, 100, 200, 400})
-    for (const CommandLine& words : commands()) {
+    for (const Arguments& words : commands()) {
       expect_orderly(in_shell(fmt::format("ulimit -f {};", kib), words),
                      fmt::format("{} with {} KiB", words[0], kib));
       empty_place();
@@ -200,7 +200,7 @@ TEST_F(HostileOutputs, ALimitOfFileSizesIsAFullDisk) {
 TEST_F(HostileOutputs, MemoryThatEndsIsOneLine) {
   int refused = 0;
   for (int mib = 100; mib < 400; mib += 10)
-    for (const CommandLine& words : commands()) {
+    for (const Arguments& words : commands()) {
       const std::string limit = fmt::format("ulimit -v {};", mib * 1024);
       if (in_shell(limit, {"--version"}).status != 0) continue;  // libraries alone take more
       const ProgramResult result = in_shell(limit, words);
@@ -212,7 +212,7 @@ TEST_F(HostileOutputs, MemoryThatEndsIsOneLine) {
 }
 
 TEST_F(HostileOutputs, NoProcIsNeeded) {
-  for (const CommandLine& words : commands()) {
+  for (const Arguments& words : commands()) {
     const ProgramResult result = in_shell(
         "unshare -m true 2>/dev/null || exit 77; exec unshare -m sh -c 'mount -t tmpfs none "
         "/proc && exec \"$@\"' sh",

@@ -19,11 +19,11 @@ using tests::picture_of;
 using tests::Scratch;
 using tests::write_text;
 using Picture = std::map<std::string, std::string>;
-using CommandLine = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 struct OutputCommand {
   std::string name;
-  CommandLine words;     ///< without the output
+  Arguments words;       ///< without the output
   std::string option;    ///< that names the output
   std::string out;       ///< name of the output; a folder if it has no extension
   bool adds_to = false;  ///< what it wrote before
@@ -59,13 +59,13 @@ struct Inputs {
   std::string path(const std::string& name) const { return (folder / name).string(); }
 
   std::vector<OutputCommand> commands() const {
-    const CommandLine batch{"--data",    flight,  "--relative", "0.0001",      "--seed", "1",
-                            "--profile", "levio", "--cache",    path("cache"), "--quiet"};
-    const auto with = [](CommandLine words, const CommandLine& more) {
+    const Arguments batch{"--data",    flight,  "--relative", "0.0001",      "--seed", "1",
+                          "--profile", "levio", "--cache",    path("cache"), "--quiet"};
+    const auto with = [](Arguments words, const Arguments& more) {
       words.insert(words.end(), more.begin(), more.end());
       return words;
     };
-    const CommandLine data{"--data", flight, "--quiet"};
+    const Arguments data{"--data", flight, "--quiet"};
     return {
         {"run", with({"run", "--native"}, data), "--out", "out"},
         {"flow", with({"flow", "--platform", "gap9"}, data), "--out", "out"},
@@ -213,7 +213,7 @@ TEST(OutputsProperty, NoCommandTouchesWhatItDidNotWrite) {
     const Scratch log;
     const Scratch own;
     const auto words = [&](const fs::path& out, bool force) {
-      CommandLine all = command.words;
+      Arguments all = command.words;
       all.insert(all.end(), {command.option, out.string()});
       if (force) all.push_back("--force");
       return all;

@@ -44,10 +44,13 @@ class TimelineOfFlight : public tests::ProgramSuite {
   }
   /// Runs it, and holds its timeline against it.
   static PerfettoTrace timeline_of(RunRequest request, RunResult& run) {
-    TimelineCollector collector(request.platform.config, request.cores);
-    request.observer = &collector;
+    std::string bytes;
+    PerfettoTimeline timeline(request.platform.config,
+                              {.cores = request.cores, .is_closed = request.camera.has_value()},
+                              [&](std::string_view piece) { bytes += piece; });
+    request.observer = &timeline;
     run = simulate(request, [](const Progress&) {});
-    const std::string bytes = perfetto_timeline(collector.events(), run);
+    timeline.finish(run);
     EXPECT_LE(bytes.size(), 50'000 * run.frames.size());
     PerfettoTrace trace(bytes);
     expect_sums_of(trace, run);

@@ -39,7 +39,10 @@ class ConstantSource : public RunSource {
   const work::Job& optimise() override { return iteration_; }
   void publish() override {}
   std::vector<StageResult> empty_stages() const override { return {}; }
-  void describe(RunResult& result) const override { result.frame_period_ns = work_.period_ns; }
+  RunSubject subject() const override {
+    return {.profile = {}, .frame_period_ns = work_.period_ns};
+  }
+  void describe(RunResult&) const override {}
 
   std::vector<soc::FrameStart> starts;
 

@@ -23,7 +23,7 @@ RunFolder reported(const RunResult& run, const std::string& name = "out") {
   manifest.command_line = {"run"};
   manifest.platform = "gap9";
   manifest.data = "flight";
-  return run_folder(name, run, manifest, "");
+  return run_folder(name, std::make_shared<const RunResult>(run), manifest, "");
 }
 
 Json json_of(const RunResult& run) { return run_json(reported(run)); }
@@ -61,8 +61,8 @@ TEST(Verdict, OfAFolderIsThatOfTheRunInMemory) {
 
 TEST(Verdict, NamesTheStageThatTakesMostOfTheSlowestFrame) {
   RunResult run = example_run();
-  run.frames[2].stage_cycles = {{"feature extraction", Cycles(1'000'000)},
-                                {"EPnP RANSAC", Cycles(4'000'000)}};
+  run.frame_stages = {"feature extraction", "EPnP RANSAC"};
+  run.frames[2].stage_cycles = {Cycles(1'000'000), Cycles(4'000'000)};
   const std::string why = json_of(run)["verdict"]["why"];
   EXPECT_NE(why.find("number 2"), std::string::npos) << why;
   EXPECT_NE(why.find("spends 40 ms in EPnP RANSAC, of 60 ms"), std::string::npos) << why;

@@ -62,7 +62,8 @@ Manifest example_manifest() {
 
 void write_to(const fs::path& folder, const RunResult& run, const std::string& platform) {
   outputs::OutputFolder out({.option = {}, .path = folder.string()});
-  write_run_folder(out, run_folder("out", run, example_manifest(), platform));
+  write_run_folder(
+      out, run_folder("out", std::make_shared<const RunResult>(run), example_manifest(), platform));
   EXPECT_FALSE(out.commit());
 }
 
@@ -109,7 +110,8 @@ TEST(FramesCsv, EveryFactOfAFrameIsAColumn) {
 
 TEST(FramesCsv, HasTheCyclesOfEachStageOfTheCluster) {
   RunResult run = example_run();
-  run.frames[3].stage_cycles = {{"feature extraction", Cycles(700)}, {"EPnP RANSAC", Cycles(30)}};
+  run.frame_stages = {"EPnP RANSAC", "feature extraction"};
+  run.frames[3].stage_cycles = {Cycles(30), Cycles(700)};
   const std::vector<Row> rows = parse_csv(csv_text(frame_rows(run)));
   EXPECT_EQ(rows[3].at("cycles_feature_extraction"), "700");
   EXPECT_EQ(rows[3].at("cycles_epnp_ransac"), "30");
@@ -210,7 +212,10 @@ TEST(RunFolder, NothingIsLeftWhenWritingFails) {
     outputs::OutputFolder out({.option = "--out", .path = (folder / "out").string()});
     out.write("run.json", "x");  // where a file is to be written
     traces::testing::expect_input_error(
-        [&] { write_run_folder(out, run_folder("", example_run(), example_manifest(), "x")); },
+        [&] {
+          write_run_folder(out, run_folder("", std::make_shared<const RunResult>(example_run()),
+                                           example_manifest(), "x"));
+        },
         {"run.json"});
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));

@@ -97,10 +97,14 @@ Shown shown(int short_forks, std::size_t most_bytes = kMostBytesOfFrame, int cor
   RunRequest request = testing::request_at(Hertz(370'000'000), deadline);
   request.cores = cores;
   request.platform.config.cluster.icache.line = Bytes(0);
-  TimelineCollector collector(request.platform.config, cores, range);
-  request.observer = &collector;
+  std::string bytes;
+  PerfettoTimeline timeline(
+      request.platform.config,
+      {.cores = cores, .is_closed = deadline.has_value(), .range = range, .most_bytes = most_bytes},
+      [&](std::string_view piece) { bytes += piece; });
+  request.observer = &timeline;
   RunResult run = simulate_source(request, source, [](const Progress&) {});
-  std::string bytes = perfetto_timeline(collector.events(), run, most_bytes);
+  timeline.finish(run);
   PerfettoTrace trace(bytes);
   return {std::move(run), std::move(bytes), std::move(trace)};
 }

@@ -54,6 +54,7 @@ struct TraceParts {
 
   std::string summary() const {
     ByteWriter out;
+    out.append("summary\n");
     for (const std::string& one : {std::string("a test"), std::string("none"), std::string("none"),
                                    std::string("gap9"), platform_yaml})
       out.text(one);
@@ -80,12 +81,12 @@ struct TraceParts {
   }
 
   std::string file() const {
-    std::string all = file_head(kWorkTraceFile) + packed_section(summary(), 1);
-    for (const std::string& content : frames) all += packed_section(content, 1);
+    std::string all = file_head(kWorkTraceFile);
     const std::string no_kernels = text(list(0, "")) + text("") + std::string(segments, '\0');
     for (std::size_t i = 0; i < frames.size(); ++i)
-      all += packed_section(offload.empty() ? no_kernels : offload[i], 1);
-    return all;
+      all += packed_section(frames[i], 1) +
+             packed_section(offload.empty() ? no_kernels : offload[i], 1);
+    return all + packed_section(summary(), 1);
   }
 };
 

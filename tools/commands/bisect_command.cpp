@@ -71,7 +71,7 @@ void run(const CLI::App& command, const BisectOptions& options, bool ends_with_d
 
 }  // namespace
 
-Command add_bisect_command(CLI::App& app, const CommandLine& words) {
+Command add_bisect_command(CLI::App& app, const Arguments& words) {
   CLI::App* command = app.add_subcommand(
       "bisect", "For git bisect run: build and run a commit, check it against a budget");
   const auto options = std::make_shared<BisectOptions>();

@@ -75,7 +75,7 @@ void run(const CLI::App& command, const BudgetOptions& options) {
 
 }  // namespace
 
-Command add_budget_command(CLI::App& app, const CommandLine&) {
+Command add_budget_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
       app.add_subcommand("budget", "Print a baseline of a run, or a budget that fits it");
   const auto options = std::make_shared<BudgetOptions>();

@@ -132,7 +132,7 @@ void run(const CLI::App& command, const CheckOptions& options) {
 
 }  // namespace
 
-Command add_check_command(CLI::App& app, const CommandLine&) {
+Command add_check_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
       app.add_subcommand("check", "Check a run against a budget; status 1 if a limit is not met");
   const auto options = std::make_shared<CheckOptions>();

@@ -41,7 +41,7 @@ namespace leviosim::tools {
 /// Adds a command with its options to the program.
 /// @param words  the whole command line, for manifests; must outlive the command
 #define LEVIOSIM_DECLARE(group, name) \
-  Command add_##name##_command(CLI::App& app, const CommandLine& words);
+  Command add_##name##_command(CLI::App& app, const Arguments& words);
 LEVIOSIM_COMMANDS(LEVIOSIM_DECLARE)
 #undef LEVIOSIM_DECLARE
 

@@ -142,7 +142,7 @@ void run(const CLI::App& command, const CompareOptions& options) {
 
 }  // namespace
 
-Command add_compare_command(CLI::App& app, const CommandLine&) {
+Command add_compare_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
       app.add_subcommand("compare", "Show what differs between runs, and why, by mechanism");
   const auto options = std::make_shared<CompareOptions>();

@@ -33,12 +33,12 @@ constexpr const char* kReport = "report.html";
 
 /// One profile on the flight.
 struct Flown {
-  RunResult result;
+  std::shared_ptr<const RunResult> result;
   RunFolder folder;
   std::string trace;  ///< its work, where it was recorded
 };
 
-Flown fly(RunOptions options, const char* profile, bool record, const CommandLine& words,
+Flown fly(RunOptions options, const char* profile, bool record, const Arguments& words,
           ProgressLine::Style style) {
   options.profile = profile;
   RunRequest request = make_chip_request(options);
@@ -46,7 +46,7 @@ Flown fly(RunOptions options, const char* profile, bool record, const CommandLin
   request.data = data_folder(options, style);
   WorkRecording recording(request.cores);
   if (record) request.recording = &recording;
-  Flown flown{simulate_with_progress(request, style), {}, {}};
+  Flown flown{std::make_shared<const RunResult>(simulate_with_progress(request, style)), {}, {}};
   const Manifest manifest = make_manifest(options, request, words);
   flown.folder = run_folder(options.out + '/' + profile, flown.result, manifest,
                             platform::to_yaml(request.platform));
@@ -182,7 +182,7 @@ std::string demo_verdict(const RunResult& a, const RunResult& b) {
 
 std::string screen(const Flown& levio, const Flown& next, const std::string& what_ifs,
                    const RunOptions& options, const std::string& out) {
-  const RunResult &a = levio.result, &b = next.result;
+  const RunResult &a = *levio.result, &b = *next.result;
   std::string text = demo_verdict(a, b);
   text += fmt::format("{} {}frames on GAP9: ms of a call on one core and on {}\n", a.frames.size(),
                       options.data == "synthetic" ? "drawn " : "", a.cores);
@@ -206,7 +206,7 @@ std::string screen(const Flown& levio, const Flown& next, const std::string& wha
                     printable(out), printable(page));
 }
 
-void run(RunOptions options, const CommandLine& words) {
+void run(RunOptions options, const Arguments& words) {
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   outputs::OutputFolder out(out_request(options));
   const Flown levio = fly(options, "levio", true, words, style);
@@ -228,7 +228,7 @@ void run(RunOptions options, const CommandLine& words) {
 
 }  // namespace
 
-Command add_demo_command(CLI::App& app, const CommandLine& words) {
+Command add_demo_command(CLI::App& app, const Arguments& words) {
   CLI::App* command = app.add_subcommand(
       "demo", "Both profiles on the synthetic flight and a what-if, on a screen");
   const auto options = std::make_shared<RunOptions>();

@@ -229,7 +229,7 @@ void run(const DoctorOptions& options) {
 
 }  // namespace
 
-Command add_doctor_command(CLI::App& app, const CommandLine&) {
+Command add_doctor_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
       app.add_subcommand("doctor", "Say what this machine has: versions, caches, data, compilers");
   const auto options = std::make_shared<DoctorOptions>();

@@ -376,7 +376,7 @@ void run(const CLI::App& command, const EvalOptions& options) {
 
 }  // namespace
 
-Command add_eval_command(CLI::App& app, const CommandLine&) {
+Command add_eval_command(CLI::App& app, const Arguments&) {
   CLI::App* command = app.add_subcommand("eval", "Compare a trajectory with the ground truth");
   const auto options = std::make_shared<EvalOptions>();
   add_eval_options(*command, *options);

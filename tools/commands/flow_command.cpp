@@ -70,7 +70,7 @@ void write_folder(outputs::OutputFolder& out, const FlowRun& flow, const Manifes
   write("published.csv", csv_text(published_rows(flow)));
 }
 
-void run(const CLI::App& command, const FlowOptions& options, const CommandLine& words) {
+void run(const CLI::App& command, const FlowOptions& options, const Arguments& words) {
   require(command, "--platform", "the name of a chip or a platform file");
   require(command, "--data", "an ASL folder or 'synthetic'");
   require(command, "--out", "a folder for the results");
@@ -97,7 +97,7 @@ void run(const CLI::App& command, const FlowOptions& options, const CommandLine&
 
 }  // namespace
 
-Command add_flow_command(CLI::App& app, const CommandLine& words) {
+Command add_flow_command(CLI::App& app, const Arguments& words) {
   CLI::App* command =
       app.add_subcommand("flow", "Run the optical flow of PX4FLOW, a second workload, on a chip");
   const auto options = std::make_shared<FlowOptions>();

@@ -177,7 +177,7 @@ void run(const CLI::App& command, const HistoryOptions& options) {
 
 }  // namespace
 
-Command add_history_command(CLI::App& app, const CommandLine&) {
+Command add_history_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
       app.add_subcommand("history", "Keep runs by commit in a file, and show how figures moved");
   const auto options = std::make_shared<HistoryOptions>();

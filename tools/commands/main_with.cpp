@@ -116,8 +116,8 @@ int end_interrupted(const Interrupted& stop, bool goes_on) {
 }
 
 /// As results record them: none depends on how many are computed at a time, nor on what is shown.
-CommandLine without_jobs(const CommandLine& typed) {
-  CommandLine words;
+Arguments without_jobs(const Arguments& typed) {
+  Arguments words;
   for (std::size_t i = 0; i < typed.size(); ++i)
     if (typed[i] == "--jobs")
       ++i;
@@ -135,8 +135,8 @@ Command grouped(Command command, std::string_view group) {
   return command;
 }
 
-int run_program(const CommandLine& typed) {
-  const CommandLine words = without_jobs(typed);
+int run_program(const Arguments& typed) {
+  const Arguments words = without_jobs(typed);
   CLI::App app("Runs visual-inertial odometry on models of ultra-low-power multicore chips.",
                "leviosim");
   app.footer("leviosim help COMMAND: its options, with examples");
@@ -169,7 +169,7 @@ int run_program(const CommandLine& typed) {
 }
 
 /// `git bisect run` takes 2 for a bad commit, and stops at others.
-int status_for_git(const CommandLine& typed, int status) {
+int status_for_git(const Arguments& typed, int status) {
   const bool is_asked = !typed.empty() && typed.front() == "bisect";
   const bool is_fault = status == kBadInput || status == kTryAgain;
   return is_asked && is_fault ? kStopsBisecting : status;
@@ -179,7 +179,7 @@ void add(std::vector<Workload> workloads) {
   for (Workload& workload : workloads) add_workload(std::move(workload));
 }
 
-int begin(const CommandLine& typed, std::vector<Workload> workloads) {
+int begin(const Arguments& typed, std::vector<Workload> workloads) {
   std::set_new_handler(end_memory);
   std::set_terminate(end_terminated);
   try {
@@ -201,7 +201,7 @@ int main_with(int argc, char** argv, std::vector<Workload> workloads) {
   std::signal(SIGXFSZ, SIG_IGN);  // writing fails then, as on a full disk
   int status = 0;
   try {
-    status = tools::begin(tools::CommandLine(argv + 1, argv + argc), std::move(workloads));
+    status = tools::begin(tools::Arguments(argv + 1, argv + argc), std::move(workloads));
   } catch (const std::bad_alloc&) {  // while it was begun, or a message was made
     status = tools::fail_without_memory();
   }

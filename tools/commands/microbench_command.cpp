@@ -96,7 +96,7 @@ void run(const MicrobenchOptions& options) {
 
 }  // namespace
 
-Command add_microbench_command(CLI::App& app, const CommandLine&) {
+Command add_microbench_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
       app.add_subcommand("microbench", "Compare small programs with measured hardware");
   const auto options = std::make_shared<MicrobenchOptions>();

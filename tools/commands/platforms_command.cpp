@@ -283,7 +283,7 @@ void run(const CLI::App& command, const PlatformsOptions& options) {
 
 }  // namespace
 
-Command add_platforms_command(CLI::App& app, const CommandLine&) {
+Command add_platforms_command(CLI::App& app, const Arguments&) {
   CLI::App* command = app.add_subcommand("platforms",
                                          "List the chips, show one with its sources, compare two, "
                                          "or ask what a workload takes on them");

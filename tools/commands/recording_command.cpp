@@ -115,7 +115,7 @@ void run(const CLI::App& command, const RecordingOptions& options) {
 
 }  // namespace
 
-Command add_recording_command(CLI::App& app, const CommandLine&) {
+Command add_recording_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
       app.add_subcommand("recording", "Check a recording: rates, gaps, gravity at rest");
   const auto options = std::make_shared<RecordingOptions>();

@@ -51,7 +51,7 @@ Replay with_progress(const traces::WorkTrace& trace, const RunRequest& request,
   return replay(trace, request, shown_on(line));
 }
 
-void run(const CLI::App& command, ReplayOptions options, const CommandLine& words) {
+void run(const CLI::App& command, ReplayOptions options, const Arguments& words) {
   require(command, "TRACE", "the work.trace of a run with --record, or its folder");
   require(command, "--out", "a folder for the results");
   check_print_options(options, options.gate.budget);
@@ -67,22 +67,23 @@ void run(const CLI::App& command, ReplayOptions options, const CommandLine& word
   std::optional<RequestedTimeline> timeline = requested_timeline(options.timeline, wanted, request);
   request.time_bands = TimeBandsOf::team;
   if (timeline) request.observer = &timeline->observer();
-  const Replay result = with_progress(trace, request, style);
+  const auto replay = std::make_shared<const Replay>(with_progress(trace, request, style));
+  const std::shared_ptr<const RunResult> run(replay, &replay->run);
   if (options.platform.empty()) options.platform = trace.info().platform;
   const Manifest manifest = replay_manifest(trace, digest_of_file(trace.name()), options, words);
   options.data = trace.info().data;
   RunFolder folder =
-      run_folder(out.shown_path(), result.run, manifest, platform::to_yaml(request.platform));
-  folder.others[kReplayFile] = replay_csv(result);
-  publish(out, run_printout(options, result.run, folder.record, replay_report(result, trace)),
+      run_folder(out.shown_path(), run, manifest, platform::to_yaml(request.platform));
+  folder.others[kReplayFile] = replay_csv(*replay);
+  publish(out, run_printout(options, *run, folder.record, replay_report(*replay, trace)),
           [&] { write_run_folder(out, folder); });
-  if (timeline) timeline->publish(result.run, !options.json);
+  if (timeline) timeline->publish(*run, !options.json);
   report_and_check(folder, page, gate, !options.json);
 }
 
 }  // namespace
 
-Command add_replay_command(CLI::App& app, const CommandLine& words) {
+Command add_replay_command(CLI::App& app, const Arguments& words) {
   CLI::App* command =
       app.add_subcommand("replay", "Time the recorded work of a run on another chip");
   const auto options = std::make_shared<ReplayOptions>();

@@ -66,7 +66,7 @@ void run(const CLI::App& command, const ReportOptions& options) {
 
 }  // namespace
 
-Command add_report_command(CLI::App& app, const CommandLine&) {
+Command add_report_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
       app.add_subcommand("report", "Runs as one page for a browser, which works offline");
   const auto options = std::make_shared<ReportOptions>();

@@ -23,7 +23,7 @@ struct RunCommandOptions : RunOptions {
   std::string report;
 };
 
-void run(RunCommandOptions options, const CommandLine& words) {
+void run(RunCommandOptions options, const Arguments& words) {
   set_run_defaults(options);
   RunRequest request = make_request(options);
   check_print_options(options, options.gate.budget);
@@ -35,27 +35,29 @@ void run(RunCommandOptions options, const CommandLine& words) {
   std::optional<RequestedTimeline> timeline = requested_timeline(options.timeline, wanted, request);
   request.data = data_folder(options, style);
   out.reserve(expected_bytes(request, options.record));
-  WorkRecording recording(request.cores);
+  const Manifest manifest = make_manifest(options, request, words);
+  outputs::Spool trace = out.spool(kWorkTraceFile);
+  WorkRecording recording(request.cores, [&](std::string_view bytes) { trace.add(bytes); });
   if (options.record) request.recording = &recording;
   request.time_bands = TimeBandsOf::team;
   if (timeline) request.observer = &timeline->observer();
-  const RunResult result = simulate_with_progress(request, style);
-  const Manifest manifest = make_manifest(options, request, words);
+  const auto result = std::make_shared<const RunResult>(simulate_with_progress(request, style));
   const RunFolder folder =
       run_folder(out.shown_path(), result, manifest,
                  request.native ? std::string() : platform::to_yaml(request.platform));
-  publish(out, run_printout(options, result, folder.record), [&] {
+  publish(out, run_printout(options, *result, folder.record), [&] {
     write_run_folder(out, folder);
     if (!options.record) return;
-    out.write(kWorkTraceFile, work_trace_of(std::move(recording), options, request, manifest));
+    work_trace_of(std::move(recording), options, request, manifest);
+    out.write(kWorkTraceFile, trace.content());
   });
-  if (timeline) timeline->publish(result, !options.json);
+  if (timeline) timeline->publish(*result, !options.json);
   report_and_check(folder, page, gate, !options.json);
 }
 
 }  // namespace
 
-Command add_run_command(CLI::App& app, const CommandLine& words) {
+Command add_run_command(CLI::App& app, const Arguments& words) {
   CLI::App* command = app.add_subcommand("run", "Run the workload on a chip, or natively");
   const auto options = std::make_shared<RunCommandOptions>();
   add_run_options(*command, *options);

@@ -120,7 +120,7 @@ void add_motion_options(CLI::App& command, SynthOptions& options) {
 
 }  // namespace
 
-Command add_synth_command(CLI::App& app, const CommandLine&) {
+Command add_synth_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
       app.add_subcommand("synth", "Make a flight: synthetic, or rendered along a recorded motion");
   const auto options = std::make_shared<SynthOptions>();

@@ -94,7 +94,7 @@ void run(const CLI::App& command, const TraceOptions& options) {
 
 }  // namespace
 
-Command add_trace_command(CLI::App& app, const CommandLine&) {
+Command add_trace_command(CLI::App& app, const Arguments&) {
   CLI::App* command = app.add_subcommand("trace", "Show what a work trace holds, or check it");
   const auto options = std::make_shared<TraceOptions>();
   command->add_option("ACTION", options->action, "info, or check: read all of it");

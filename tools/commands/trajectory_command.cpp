@@ -32,7 +32,7 @@ void run(const CLI::App& command, const TrajectoryOptions& options) {
 
 }  // namespace
 
-Command add_trajectory_command(CLI::App& app, const CommandLine&) {
+Command add_trajectory_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
       app.add_subcommand("trajectory", "Print a trajectory in the format of other programs");
   const auto options = std::make_shared<TrajectoryOptions>();

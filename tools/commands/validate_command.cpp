@@ -28,7 +28,8 @@ constexpr const char* kNotExamined = "not examined yet";
 /// The folder of the run, with what was found out about it.
 void write_folder(outputs::OutputFolder& out, const Validation& validation, const RunResult& run,
                   const Manifest& manifest, const std::string& platform) {
-  write_run_folder(out, run_folder(out.shown_path(), run, manifest, platform));
+  write_run_folder(out, run_folder(out.shown_path(), std::make_shared<const RunResult>(run),
+                                   manifest, platform));
   out.write("validation.csv", validation_csv(validation));
   out.write("validation.json", json_text(validation_json(validation), 2) + '\n');
   std::vector<std::optional<double>> values;
@@ -70,7 +71,7 @@ void fit(const RunOptions& options) {
       [&] { return json_text(factor_json(stages), 2) + '\n'; }));
 }
 
-void validate(const RunOptions& given, const CommandLine& words) {
+void validate(const RunOptions& given, const Arguments& words) {
   const RunOptions options = as_released(given);
   RunRequest request = make_chip_request(options);
   const std::optional<RunOptions> second = paper_keypoints(options);
@@ -109,7 +110,7 @@ void validate(const RunOptions& given, const CommandLine& words) {
 
 }  // namespace
 
-Command add_validate_command(CLI::App& app, const CommandLine& words) {
+Command add_validate_command(CLI::App& app, const Arguments& words) {
   CLI::App* command =
       app.add_subcommand("validate", "Compare a run with the tables of the LEVIO paper");
   const auto options = std::make_shared<ValidateOptions>();

@@ -126,7 +126,7 @@ void run(const CLI::App& command, const WhyOptions& options) {
 
 }  // namespace
 
-Command add_why_command(CLI::App& app, const CommandLine&) {
+Command add_why_command(CLI::App& app, const Arguments&) {
   CLI::App* command = app.add_subcommand("why", "Why a frame was late, beside the median frame");
   const auto options = std::make_shared<WhyOptions>();
   command->add_option("RUN", options->run, "folder of a run with --record, or a work trace");

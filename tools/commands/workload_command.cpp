@@ -78,7 +78,7 @@ void run(const WorkloadOptions& options) {
 
 }  // namespace
 
-Command add_workload_command(CLI::App& app, const CommandLine&) {
+Command add_workload_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
       app.add_subcommand("workload", "List the profiles of the workload and its parameters");
   const auto options = std::make_shared<WorkloadOptions>();

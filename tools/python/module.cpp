@@ -99,10 +99,15 @@ RunOptions run_options(const py::dict& words) {
   return options;
 }
 
-std::map<std::string, std::string> files_of_run(const RunResult& result, const Manifest& manifest,
+std::map<std::string, std::string> files_of_run(RunResult result, const Manifest& manifest,
                                                 const RunRequest& request) {
-  return files_of(run_folder("", result, manifest,
-                             request.native ? std::string() : platform::to_yaml(request.platform)));
+  const RunFolder folder =
+      run_folder("", std::make_shared<const RunResult>(std::move(result)), manifest,
+                 request.native ? std::string() : platform::to_yaml(request.platform));
+  std::map<std::string, std::string> files;
+  for (const auto& [name, content] : files_of(folder))
+    content.hand_to([&text = files[name]](std::string_view piece) { text += piece; });
+  return files;
 }
 
 py::dict run(const py::dict& words, const py::object& progress) {

@@ -25,9 +25,10 @@ class FlightSource : public TraceSource {
     return std::llround(static_cast<double>(recorded) * static_cast<double>(period_ns_) /
                         static_cast<double>(recorded_ns_));
   }
-  void describe(RunResult& result) const override {
-    TraceSource::describe(result);
-    result.frame_period_ns = period_ns_;
+  RunSubject subject() const override {
+    RunSubject subject = TraceSource::subject();
+    subject.frame_period_ns = period_ns_;
+    return subject;
   }
 
  private:
@@ -62,10 +63,12 @@ class FrameSource : public RunSource {
   }
   void publish() override {}
   std::vector<StageResult> empty_stages() const override { return stages_of(trace_); }
-  void describe(RunResult& result) const override {
-    describe_recording(trace_, result);
-    result.frame_period_ns = period_ns_;
+  RunSubject subject() const override {
+    RunSubject subject = subject_of(trace_);
+    subject.frame_period_ns = period_ns_;
+    return subject;
   }
+  void describe(RunResult& result) const override { describe_recording(trace_, result); }
 
  private:
   const traces::WorkTrace& trace_;

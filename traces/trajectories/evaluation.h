@@ -23,7 +23,9 @@ namespace leviosim::traces {
 /// Throws InputError if the accuracy of poses at these times is unknown: there is ground truth,
 /// but fewer than three stamps have a true pose that is close enough (EvaluationOptions). Passes
 /// where there is no truth, or fewer than three stamps.
-void require_truth_at(const Dataset& data, const std::vector<std::int64_t>& stamps_ns);
+/// @param file  of the truth, for the message
+void require_truth_at(const Trajectory& truth, const std::filesystem::path& file,
+                      const std::vector<std::int64_t>& stamps_ns);
 
 /// What the stamps of both trajectories are.
 enum class Stamps {

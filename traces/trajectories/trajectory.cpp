@@ -44,7 +44,14 @@ Eigen::Quaterniond attitude_of(const StampedPose& pose) {
 }  // namespace
 
 std::string format_tum(const Trajectory& trajectory) {
-  std::string out = "# timestamp tx ty tz qx qy qz qw\n";
+  std::string text;
+  write_tum(trajectory, [&](std::string_view line) { text += line; });
+  return text;
+}
+
+void write_tum(const Trajectory& trajectory, const std::function<void(std::string_view)>& sink) {
+  sink("# timestamp tx ty tz qx qy qz qw\n");
+  std::string out;
   for (const StampedPose& pose : trajectory) {
     const Eigen::Vector3d p = pose.T_world_body.translation();
     const Eigen::Quaterniond q = attitude_of(pose);
@@ -52,8 +59,9 @@ std::string format_tum(const Trajectory& trajectory) {
                    pose.t_ns % kNsPerSecond);
     append_numbers(out, ' ', {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
     out += '\n';
+    sink(out);
+    out.clear();
   }
-  return out;
 }
 
 std::string format_euroc(const Trajectory& trajectory) {

@@ -7,7 +7,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "traces/datasets/dataset.h"
@@ -25,6 +27,8 @@ using Trajectory = std::vector<StampedPose>;
 /// The text of a TUM file. Nine decimals everywhere, qw >= 0, no negative zero: the same poses give
 /// the same bytes.
 std::string format_tum(const Trajectory& trajectory);
+/// The same, line by line.
+void write_tum(const Trajectory& trajectory, const std::function<void(std::string_view)>& sink);
 
 /// The first 8 columns of a EuRoC ground-truth csv: nanoseconds, position, w x y z.
 std::string format_euroc(const Trajectory& trajectory);

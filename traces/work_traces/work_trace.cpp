@@ -19,6 +19,7 @@ namespace leviosim::traces {
 namespace {
 
 constexpr int kFramesPerChunk = 32;
+constexpr std::string_view kSummary = "summary\n";  ///< tells it from other sections
 constexpr int kLevel = 9;  ///< of zstd; higher ones take longer than the run for 2 % of size
 constexpr std::uint64_t kMostCores = 1024;
 constexpr std::uint64_t kLargestSide = 1 << 16;
@@ -55,6 +56,7 @@ void write_ate(ByteWriter& out, const Evaluation& ate) {
 std::string summary_of(const WorkTraceInfo& info, NameTable& names,
                        const std::vector<int>& chunk_frames) {
   ByteWriter out;
+  out.append(kSummary);
   for (const std::string* text :
        {&info.program, &info.profile, &info.data, &info.platform, &info.platform_yaml})
     out.text(*text);
@@ -231,13 +233,14 @@ WorkTrace::WorkTrace(std::string name, std::string bytes, Bytes memory)
     : name_(std::move(name)), bytes_(std::move(bytes)), budget_(memory) {
   take_file(budget_, bytes_.size(), name_);
   const std::vector<Section> sections = sections_of(kWorkTraceFile, name_, bytes_);
-  if (sections.empty())
+  const Section last = sections.empty() ? Section() : sections.back();
+  const std::string summary = sections.empty() ? "" : unpacked(last, name_, budget_);
+  if (!summary.starts_with(kSummary))
     throw InputError(fmt::format("{}, byte {}: the file ends before its summary: it is truncated",
                                  name_, bytes_.size()));
-  const std::string summary = unpacked(sections[0], name_, budget_);
-  const std::string place =
-      fmt::format("{}, summary (section at byte {})", name_, sections[0].offset);
+  const std::string place = fmt::format("{}, summary (section at byte {})", name_, last.offset);
   ByteReader in(summary, place, &budget_);
+  in.take(kSummary.size(), "the begin of the summary");
   read_summary(in);
   read_chunks(in, sections);
   read_stamps(in, info_.stamps_ns);
@@ -280,41 +283,50 @@ void WorkTrace::read_summary(ByteReader& in) {
 void WorkTrace::read_chunks(ByteReader& in, const std::vector<Section>& sections) {
   int frames = 0;
   const std::size_t chunks = in.count("sections of frames", sizeof(Chunk));
-  const std::size_t expected = 2 * chunks;
-  if (expected + 1 != sections.size())
-    throw InputError(fmt::format(
-        "{}, byte {}: the file ends after {} sections of frames; expected {}: it is truncated",
-        name_, bytes_.size(), sections.size() - 1, expected));
+  if (2 * chunks + 1 != sections.size())
+    in.fail(fmt::format("{} sections of frames and kernels before it; expected {}",
+                        sections.size() - 1, 2 * chunks));
   for (std::size_t i = 0; i < chunks; ++i) {
     const auto n = static_cast<int>(read_number(in, 1 << 16, "frames of a section"));
     if (n == 0) in.fail("a section without frames");
-    chunks_.push_back({frames, n, sections[i + 1], sections[i + 1 + chunks]});
+    chunks_.push_back({frames, n, sections[2 * i], sections[2 * i + 1]});
     frames += n;
     if (static_cast<std::size_t>(frames) > in.left()) in.fail("more frames than time stamps");
   }
 }
 
 struct WorkTraceWriter::State {
-  explicit State(int workers) : cores(workers), chunk(names) {}
+  State(int workers, std::function<void(std::string_view)> takes)
+      : cores(workers), sink(std::move(takes)), chunk(names) {
+    put(file_head(kWorkTraceFile));
+  }
+
+  void put(const std::string& bytes) {
+    if (sink)
+      sink(bytes);
+    else
+      held += bytes;
+  }
 
   void end_chunk() {
     chunk_frames.push_back(chunk.frames());
     const ChunkWriter::Contents contents = chunk.finish();
-    sections += packed_section(contents.frames, kLevel);
-    offload += packed_section(contents.offload, kLevel);
+    put(packed_section(contents.frames, kLevel));
+    put(packed_section(contents.offload, kLevel));
   }
 
   int cores;
+  std::function<void(std::string_view)> sink;
+  std::string held;
   NameTable names;
   ChunkWriter chunk;
   std::vector<int> chunk_frames;
   std::vector<std::int64_t> stamps_ns;
   std::optional<std::size_t> facts;  ///< of each frame
-  std::string sections;
-  std::string offload;
 };
 
-WorkTraceWriter::WorkTraceWriter(int cores) : state_(std::make_unique<State>(cores)) {}
+WorkTraceWriter::WorkTraceWriter(int cores, std::function<void(std::string_view)> sink)
+    : state_(std::make_unique<State>(cores, std::move(sink))) {}
 WorkTraceWriter::~WorkTraceWriter() = default;
 WorkTraceWriter::WorkTraceWriter(WorkTraceWriter&&) noexcept = default;
 WorkTraceWriter& WorkTraceWriter::operator=(WorkTraceWriter&&) noexcept = default;
@@ -332,9 +344,8 @@ std::string WorkTraceWriter::finish(WorkTraceInfo info) {
   info.cores = state_->cores;
   if (state_->facts) check_equal(info.facts.size(), *state_->facts, "names of facts of frames");
   info.stamps_ns = state_->stamps_ns;
-  return file_head(kWorkTraceFile) +
-         packed_section(summary_of(info, state_->names, state_->chunk_frames), kLevel) +
-         state_->sections + state_->offload;
+  state_->put(packed_section(summary_of(info, state_->names, state_->chunk_frames), kLevel));
+  return std::move(state_->held);
 }
 
 }  // namespace leviosim::traces

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,7 +31,7 @@
 namespace leviosim::traces {
 
 /// Work traces as files.
-inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 8};
+inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 9};
 
 class ByteReader;
 
@@ -134,17 +135,19 @@ class WorkTrace {
   std::vector<Chunk> chunks_;
 };
 
-/// Makes a trace of frames that are given in order.
+/// Makes a trace of frames that are given in order; it holds those of a section only.
 class WorkTraceWriter {
  public:
   /// @param cores  among which the work of the front end is divided
-  explicit WorkTraceWriter(int cores);
+  /// @param sink   takes the bytes of the file as they come; without one they are held
+  explicit WorkTraceWriter(int cores, std::function<void(std::string_view)> sink = {});
   ~WorkTraceWriter();
   WorkTraceWriter(WorkTraceWriter&&) noexcept;
   WorkTraceWriter& operator=(WorkTraceWriter&&) noexcept;
 
   void add(const WorkFrame& frame);
-  /// The bytes of the file. `info.stamps_ns` and `info.cores` are those of the frames.
+  /// Ends the file. `info.stamps_ns` and `info.cores` are those of the frames.
+  /// @returns its bytes, if they were held
   std::string finish(WorkTraceInfo info);
 
  private:

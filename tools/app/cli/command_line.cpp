@@ -37,7 +37,7 @@ std::vector<std::string> options_of(const CLI::App& app) {
 
 /// Options stand before their values, so the first unknown option is the fault; else the first
 /// word.
-const std::string& first_fault(const CommandLine& unknown) {
+const std::string& first_fault(const Arguments& unknown) {
   const auto option = std::find_if(unknown.begin(), unknown.end(),
                                    [](const std::string& word) { return word.rfind('-', 0) == 0; });
   return option == unknown.end() ? unknown.front() : *option;
@@ -53,7 +53,7 @@ const std::string& first_fault(const CommandLine& unknown) {
 }
 
 /// CLI11 takes the next word for the value of "--out=", and an empty word for no value.
-void refuse_empty_values(const CommandLine& words) {
+void refuse_empty_values(const Arguments& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool is_option = words[i].rfind("--", 0) == 0;
     if (is_option && words[i].find('=') == words[i].size() - 1)
@@ -93,7 +93,7 @@ std::string about_count(const CLI::ArgumentMismatch& error) {
 }
 
 [[noreturn]] void fail_without_command(const std::vector<Command>& commands,
-                                       const CommandLine& unknown, const CLI::App& app) {
+                                       const Arguments& unknown, const CLI::App& app) {
   if (unknown.empty())
     throw InputError(fmt::format("expected a command: {}", fmt::join(names_of(commands), ", ")));
   const std::string& word = unknown.front();
@@ -108,7 +108,7 @@ const Command* command_named(const std::vector<Command>& commands, const std::st
 }
 
 /// "help run" as "run --help", and "help" as "--help".
-CommandLine help_as_option(const CommandLine& words, const std::vector<Command>& commands) {
+Arguments help_as_option(const Arguments& words, const std::vector<Command>& commands) {
   if (words.empty() || words.front() != kHelp) return words;
   if (words.size() == 1) return {"--help"};
   if (command_named(commands, words[1]) == nullptr) fail_unknown_command(commands, words[1]);
@@ -136,8 +136,7 @@ void add_examples(CLI::App& command, const std::vector<std::string>& lines) {
   command.footer(fmt::format("Examples:\n  {}", fmt::join(lines, "\n  ")));
 }
 
-int run_command_line(CLI::App& app, const std::vector<Command>& commands,
-                     const CommandLine& typed) {
+int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Arguments& typed) {
   refuse_empty_values(typed);
   if (typed.empty()) {
     print_piece(ScreenPiece::Kind::document, welcome(commands));
@@ -147,7 +146,7 @@ int run_command_line(CLI::App& app, const std::vector<Command>& commands,
     print_piece(ScreenPiece::Kind::document, manual(app, commands, typed[2]));
     return 0;
   }
-  const CommandLine words = help_as_option(typed, commands);
+  const Arguments words = help_as_option(typed, commands);
   // CLI11 would go on to a later word that is a command.
   if (!words.empty() && words.front().front() != '-' &&
       command_named(commands, words.front()) == nullptr)
@@ -163,7 +162,7 @@ int run_command_line(CLI::App& app, const std::vector<Command>& commands,
           "--all", [](std::int64_t) {}, "print all lines, instead of a screen of them");
   }
   try {
-    app.parse(CommandLine(words.rbegin(), words.rend()));  // CLI11 takes vectors back to front
+    app.parse(Arguments(words.rbegin(), words.rend()));  // CLI11 takes vectors back to front
   } catch (const CLI::Success& help_or_version) {
     std::ostringstream text;
     const int status = app.exit(help_or_version, text, text);
@@ -176,7 +175,7 @@ int run_command_line(CLI::App& app, const std::vector<Command>& commands,
   }
   for (const Command& command : commands) {
     if (!app.got_subcommand(command.app)) continue;
-    CommandLine unknown = command.app->remaining();
+    Arguments unknown = command.app->remaining();
     std::erase(unknown, "--");  // what stands behind it was taken
     if (!unknown.empty())
       fail_unknown(command.app->get_name() + ": ", first_fault(unknown), options_of(*command.app));

@@ -37,12 +37,12 @@ struct TextOptions {
 void add_examples(CLI::App& command, const std::vector<std::string>& lines);
 
 /// The words of a command line, without the name of the program.
-using CommandLine = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 /// Parses the words and runs the command they name. "help COMMAND" is "COMMAND --help".
 /// @returns the exit status: 0 also where only help or version was asked for
 /// @throws InputError for anything that is not understood, with the nearest valid name
-int run_command_line(CLI::App& app, const std::vector<Command>& commands, const CommandLine& typed);
+int run_command_line(CLI::App& app, const std::vector<Command>& commands, const Arguments& typed);
 
 /// Option checks: the text of an option, or InputError "--name 'text': expected …".
 /// @param about_max  says where the greatest number comes from, after it

@@ -68,7 +68,7 @@ void publish(std::initializer_list<FileOutput> files, const Printout& report) {
     if (!output.file) continue;
     bool is_written = false;
     const std::optional<std::string> fault = fault_of([&] {
-      std::optional<std::string> elsewhere = output.file->publish(output.bytes);
+      std::optional<std::string> elsewhere = output.file->publish(output.content);
       is_written = true;
       return elsewhere;
     });

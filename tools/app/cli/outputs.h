@@ -28,7 +28,7 @@ void expect_different(const std::optional<outputs::OutputFile>& first, const cha
 
 struct FileOutput {
   std::optional<outputs::OutputFile>& file;
-  std::string bytes;
+  outputs::Content content;
   std::string label;  ///< of the line after the report, "table"; empty: none
 };
 

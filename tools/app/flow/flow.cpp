@@ -78,10 +78,11 @@ std::vector<StageResult> FlowSource::empty_stages() const {
   return stages;
 }
 
+RunSubject FlowSource::subject() const {
+  return {"px4flow", std::llround(1e9 / data_.camera.rate_hz), options_.side, options_.side};
+}
+
 void FlowSource::describe(RunResult& result) const {
-  result.profile = "px4flow";
-  result.frame_period_ns = std::llround(1e9 / data_.camera.rate_hz);
-  result.image_width = result.image_height = options_.side;
   const Bytes image(std::int64_t{options_.side} * options_.side);
   result.l2.push_back(
       {"camera", image * 2, {{"image", Bytes(0), image}, {"image being received", image, image}}});

@@ -34,6 +34,7 @@ class FlowSource : public RunSource {
   const work::Job& optimise() override;
   void publish() override {}
   std::vector<StageResult> empty_stages() const override;
+  RunSubject subject() const override;
   void describe(RunResult& result) const override;
 
   /// Of the frames so far; the first has none.

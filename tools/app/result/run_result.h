@@ -27,12 +27,6 @@ using soc::Deadline;
 using soc::StageResult;
 using vio::PoseSource;
 
-/// Cycles of a stage in one frame, over all its calls.
-struct StageCycles {
-  std::string_view stage;  ///< a literal of the workload, or the trace's
-  Cycles cycles;
-};
-
 /// The result of a frame, and its times.
 struct FrameResult : vio::FrameFacts, soc::FrameTiming {
   int index = 0;          ///< in the data set
@@ -40,14 +34,9 @@ struct FrameResult : vio::FrameFacts, soc::FrameTiming {
   traces::StampedPose pose;
   /// Corrected poses of earlier frames, by how many frames ago they were processed.
   std::vector<std::pair<int, traces::StampedPose>> earlier = {};
-  std::vector<StageCycles> stage_cycles = {};  ///< on N cores, of the stages that ran, in order
-
-  /// None if the stage did not run.
-  Cycles cycles_of(std::string_view stage) const {
-    for (const StageCycles& s : stage_cycles)
-      if (s.stage == stage) return s.cycles;
-    return {};
-  }
+  /// On N cores, over all calls, of RunResult::frame_stages; stages at the end are left out if they
+  /// did not run.
+  std::vector<Cycles> stage_cycles = {};
 };
 
 /// Names of the rows of L2 that do not come from the workload.
@@ -75,22 +64,27 @@ struct TimeBands {
   std::vector<Stage> stages{};
 };
 
-struct RunResult {
+/// What a run is of, known before it begins.
+struct RunSubject {
   std::string profile;
+  std::int64_t frame_period_ns = 0;  ///< of the camera
+  int image_width = 0;               ///< [px]
+  int image_height = 0;
+};
+
+struct RunResult : RunSubject {
   std::vector<std::string> notes{};  ///< what was mended of the data, a sentence each
-  bool timed = true;  ///< false for --native: no cycles, no latencies
+  bool timed = true;                 ///< false for --native: no cycles, no latencies
   int cores = 8;
   Hertz cluster_clock;
   Hertz controller_clock;
   Bytes l1_size;
   Bytes l2_size;
-  std::int64_t frame_period_ns = 0;  ///< of the camera
-  int image_width = 0;
-  int image_height = 0;
-  std::vector<StageResult> stages;     ///< in the order of the workload
-  Cycles offload;                      ///< of the cluster's jobs, outside of stages
-  std::vector<FrameResult> frames;     ///< frames that the front end processed
-  std::optional<CameraRecord> camera;  ///< of a closed loop
+  std::vector<StageResult> stages;          ///< in the order of the workload
+  Cycles offload;                           ///< of the cluster's jobs, outside of stages
+  std::vector<FrameResult> frames;          ///< frames that the front end processed
+  std::vector<std::string> frame_stages{};  ///< names of FrameResult::stage_cycles
+  std::optional<CameraRecord> camera;       ///< of a closed loop
   Bytes external_size;
   std::vector<L2Row> l2;
   std::vector<L2Row> external;  ///< what lies in external memory, since L2 has no room for it

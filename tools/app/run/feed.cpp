@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+#include <utility>
+
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/image_source.h"
 #include "traces/datasets/imu_samples.h"
@@ -54,6 +57,7 @@ std::vector<soc::CameraFrame> camera_frames(const RunRequest& request,
 Feed::Feed(const RunRequest& request)
     : data_(traces::open_recording(request.data,
                                    {.frames = request.frames, .disturbance = request.disturbance})),
+      truth_(traces::to_trajectory(std::exchange(data_.ground_truth, {}))),
       frames_(camera_frames(request, data_)),
       rate_hz_(request.camera && request.camera->fps ? *request.camera->fps : data_.camera.rate_hz),
       images_(data_, request.image_size),
@@ -88,6 +92,10 @@ const vio::FrameInput& Feed::frame(int i) {
   }
   last_ = i;
   return input_;
+}
+
+RunSubject subject_of(const std::string& profile, const Feed& feed) {
+  return {profile, std::llround(1e9 / feed.rate_hz()), feed.rig().width, feed.rig().height};
 }
 
 }  // namespace leviosim::tools

@@ -6,9 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "tools/app/result/run_result.h"
 #include "tools/app/run/run_request.h"
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/image_source.h"
+#include "traces/trajectories/trajectory.h"
 #include "workload/vio/records.h"
 
 namespace leviosim::tools {
@@ -18,7 +20,9 @@ class Feed {
   /// @throws InputError for data that cannot be used
   explicit Feed(const RunRequest& request);
 
+  /// Without the ground truth.
   const traces::Dataset& data() const { return data_; }
+  const traces::Trajectory& truth() const { return truth_; }
   const vio::Rig& rig() const { return rig_; }
   /// Frames per second of the camera.
   double rate_hz() const { return rate_hz_; }
@@ -37,6 +41,7 @@ class Feed {
   std::span<const traces::ImuSample> imu_of(int i) const;
 
   traces::Dataset data_;
+  traces::Trajectory truth_;
   std::vector<soc::CameraFrame> frames_;
   double rate_hz_;
   traces::ImageSource images_;
@@ -47,5 +52,8 @@ class Feed {
   traces::GrayImage image_;
   vio::FrameInput input_;
 };
+
+/// What a run of that profile is of.
+RunSubject subject_of(const std::string& profile, const Feed& feed);
 
 }  // namespace leviosim::tools

@@ -28,7 +28,9 @@ struct JobCycles {
 
 class CyclesRecorder : public RunObserver {
  public:
-  void on_start(int frames) override { cycles.resize(static_cast<std::size_t>(frames)); }
+  void on_start(const RunSubject&, int frames) override {
+    cycles.resize(static_cast<std::size_t>(frames));
+  }
   void on_front_end(const FrontEndJob& e) override {
     cycles[static_cast<std::size_t>(e.frame)].front_end = sum_of(e.parallel);
   }
@@ -74,6 +76,7 @@ class KnownSource : public RunSource {
   std::optional<Cycles> known_cycles() const override { return takes_; }
   void publish() override {}
   std::vector<StageResult> empty_stages() const override { return known_.run.stages; }
+  RunSubject subject() const override { return subject_of(trace_); }
   void describe(RunResult& result) const override { describe_recording(trace_, result); }
 
   /// Whether the same frames and optimisations were run.
@@ -141,6 +144,7 @@ std::optional<Replay> repeat(const traces::WorkTrace& trace, const Replay& known
   if (!source.is_same()) return std::nullopt;
   result.run.offload = known.run.offload;
   result.run.time_bands = known.run.time_bands;
+  result.run.frame_stages = known.run.frame_stages;
   for (std::size_t i = 0; i < result.run.frames.size(); ++i) {
     result.run.frames[i].stage_cycles = known.run.frames[i].stage_cycles;
     result.run.frames[i].single_cycles = known.run.frames[i].single_cycles;

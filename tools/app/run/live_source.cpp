@@ -132,7 +132,7 @@ LiveSource::LiveSource(const RunRequest& request)
         "--data {}: the recording has no gyroscope, and profile '{}' needs one; expected --profile "
         "levio-no-imu",
         request.data, profile_.name));
-  if (evaluate_) traces::require_truth_at(feed_.data(), stamps_of(feed_));
+  if (evaluate_) traces::require_truth_at(feed_.truth(), feed_.data().truth_csv, stamps_of(feed_));
 }
 
 bool LiveSource::begin_frame(const soc::FrameStart& start) {
@@ -176,12 +176,8 @@ std::vector<StageResult> LiveSource::empty_stages() const {
 }
 
 void LiveSource::describe(RunResult& result) const {
-  result.profile = profile_.name;
   result.notes = feed_.data().notes;
-  result.frame_period_ns = std::llround(1e9 / feed_.rate_hz());
   if (result.camera) result.camera->fps = feed_.rate_hz();
-  result.image_width = feed_.rig().width;
-  result.image_height = feed_.rig().height;
   for (const auto& [name, arena] : {std::pair<const char*, const work::Arena&>{
                                         "last keyframe", odometry_->last_keyframe_memory()},
                                     {"pose graph", odometry_->pose_graph_memory()},
@@ -192,7 +188,7 @@ void LiveSource::describe(RunResult& result) const {
   result.passages = cluster_.passages();
   result.passages.insert(result.passages.end(), controller_.passages().begin(),
                          controller_.passages().end());
-  if (evaluate_ && !feed_.data().ground_truth.empty() && result.trajectory.size() >= kFewestPoses &&
+  if (evaluate_ && !feed_.truth().empty() && result.trajectory.size() >= kFewestPoses &&
       why_incomparable(result).empty())
     evaluate(result);
 }
@@ -200,7 +196,7 @@ void LiveSource::describe(RunResult& result) const {
 /// A run that has diverged, or dropped the frames that the truth covers, is still a run.
 void LiveSource::evaluate(RunResult& result) const {
   try {
-    const traces::Trajectory truth = traces::to_trajectory(feed_.data().ground_truth);
+    const traces::Trajectory& truth = feed_.truth();
     result.ate =
         traces::evaluate(result.trajectory, truth, {.expected_poses = expected_poses(result)});
     const traces::Trajectory located = located_poses(result);

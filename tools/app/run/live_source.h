@@ -28,6 +28,7 @@ class LiveSource : public RunSource {
   const work::Job& optimise() override;
   void publish() override;
   std::vector<StageResult> empty_stages() const override;
+  RunSubject subject() const override { return subject_of(profile_.name, feed_); }
   void describe(RunResult& result) const override;
 
  private:

@@ -49,8 +49,8 @@ std::string trace_of(const std::string& name) {
 RunFolder computed_run(const std::string& name, const RunRequest& request, const Manifest& manifest,
                        const Compute& compute, bool quiet) {
   ProgressLine line(ProgressLine::style_of_stderr(quiet));
-  return run_folder(name, compute(request, shown_on(line)), manifest,
-                    platform::to_yaml(request.platform));
+  return run_folder(name, std::make_shared<const RunResult>(compute(request, shown_on(line))),
+                    manifest, platform::to_yaml(request.platform));
 }
 
 Manifest manifest_of_recording(const traces::WorkTrace& trace) {

@@ -3,6 +3,7 @@
 
 #include <deque>
 
+#include "sim/outputs/content.h"
 #include "tools/app/run/run_source.h"
 #include "traces/work_traces/work_trace.h"
 
@@ -11,7 +12,8 @@ namespace leviosim::tools {
 /// What a run leaves for its work trace.
 struct WorkRecording {
   /// @param cores  among which the work of the front end is divided
-  explicit WorkRecording(int cores) : writer(cores) {}
+  /// @param sink   as of the writer
+  explicit WorkRecording(int cores, outputs::Sink sink = {}) : writer(cores, std::move(sink)) {}
 
   traces::WorkTraceWriter writer;
   traces::WorkTraceInfo info;  ///< as far as the source knows it
@@ -32,6 +34,7 @@ class RecordingSource : public RunSource {
   const work::Job& optimise() override;
   void publish() override { source_.publish(); }
   std::vector<StageResult> empty_stages() const override { return source_.empty_stages(); }
+  RunSubject subject() const override { return source_.subject(); }
   void describe(RunResult& result) const override;
 
   /// After the run. It may have ended within an optimisation, which a faster chip would finish: its

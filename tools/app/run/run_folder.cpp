@@ -94,15 +94,16 @@ RunRecord make_record(std::string name, const Manifest& manifest, const RunResul
   return record;
 }
 
-RunFolder run_folder(std::string name, const RunResult& run, const Manifest& manifest,
-                     const std::string& platform_yaml) {
+RunFolder run_folder(std::string name, std::shared_ptr<const RunResult> kept,
+                     const Manifest& manifest, const std::string& platform_yaml) {
+  const RunResult& run = *kept;
   RunFolder folder{make_record(std::move(name), manifest, run), manifest_json(manifest, run)};
+  folder.run = std::move(kept);
   const auto add = [&](const char* file, Table table) {
     if (!table.heads().empty()) folder.tables.emplace(file, std::move(table));
   };
   add(kFramesFile, frame_rows(run));
   add(kErrorsFile, error_rows(run));
-  folder.others["trajectory.tum"] = traces::format_tum(run.trajectory);
   if (!run.timed) return folder;
   add(kStagesFile, stage_rows(run));
   add(kMemoryFile, memory_rows(run));
@@ -112,16 +113,23 @@ RunFolder run_folder(std::string name, const RunResult& run, const Manifest& man
   return folder;
 }
 
-std::map<std::string, std::string> files_of(const RunFolder& run) {
-  std::map<std::string, std::string> files = run.others;
-  files[kRecordFile] = record_text(run.record);
-  files[kManifestFile] = json_text(run.manifest, 2) + '\n';
-  for (const auto& [name, table] : run.tables) files[name] = csv_text(table);
+std::map<std::string, outputs::Content> files_of(const RunFolder& run) {
+  using outputs::Content;
+  using outputs::Sink;
+  std::map<std::string, Content> files;
+  for (const auto& [name, text] : run.others) files.emplace(name, text);
+  files.emplace(kRecordFile, [&](const Sink& sink) { sink(record_text(run.record)); });
+  files.emplace(kManifestFile, [&](const Sink& sink) { sink(json_text(run.manifest, 2) + '\n'); });
+  for (const auto& [name, table] : run.tables)
+    files.emplace(name, [&table](const Sink& sink) { write_csv(table, sink); });
+  if (run.run)
+    files.emplace(kTrajectoryFile,
+                  [&](const Sink& sink) { traces::write_tum(run.run->trajectory, sink); });
   return files;
 }
 
 void write_run_folder(outputs::OutputFolder& out, const RunFolder& run, const std::string& below) {
-  for (const auto& [name, text] : files_of(run)) out.write(below + name, text);
+  for (const auto& [name, content] : files_of(run)) out.write(below + name, content);
 }
 
 RunFolder read_run_folder(const fs::path& folder, bool with_tables) {

@@ -21,6 +21,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,7 @@ inline constexpr const char* kMemoryFile = "memory.csv";
 inline constexpr const char* kEnergyFile = "energy.csv";
 inline constexpr const char* kErrorsFile = "errors.csv";
 inline constexpr const char* kCyclesFile = "cycles.csv";
+inline constexpr const char* kTrajectoryFile = "trajectory.tum";
 
 /// Begins the columns of frames.csv with the cycles of a stage: "cycles_epnp_ransac".
 inline constexpr const char* kStageColumn = "cycles_";
@@ -56,15 +58,16 @@ struct RunFolder {
   std::map<std::string, Table> tables = {};  ///< by the names of their files
   /// Name → content of what programs do not read.
   std::map<std::string, std::string> others = {};
+  std::shared_ptr<const RunResult> run = {};  ///< of which long tables are made; none if read
 };
 
 /// @param name           of the record
 /// @param platform_yaml  unused for a native run
-RunFolder run_folder(std::string name, const RunResult& run, const Manifest& manifest,
-                     const std::string& platform_yaml);
+RunFolder run_folder(std::string name, std::shared_ptr<const RunResult> run,
+                     const Manifest& manifest, const std::string& platform_yaml);
 
-/// Name → content.
-std::map<std::string, std::string> files_of(const RunFolder& run);
+/// Name → content. The folder outlives it.
+std::map<std::string, outputs::Content> files_of(const RunFolder& run);
 
 /// Writes into a folder that the caller has claimed. @throws InputError if a file cannot be written
 /// @param below  folder in it, "chosen/"

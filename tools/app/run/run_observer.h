@@ -31,7 +31,7 @@ class RunObserver {
   virtual bool wants_steps() const { return false; }
   /// The run is about to begin. @param frames  of the camera
   /// @throws InputError if the run cannot be observed as requested
-  virtual void on_start([[maybe_unused]] int frames) {}
+  virtual void on_start([[maybe_unused]] const RunSubject& subject, [[maybe_unused]] int frames) {}
   virtual void on_front_end(const FrontEndJob&) {}
   virtual void on_optimiser(const OptimiserJob&) {}
 };

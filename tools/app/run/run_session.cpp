@@ -85,7 +85,7 @@ Manifest manifest_of_data(const RunRequest& request) {
 }
 
 Manifest make_manifest(const RunOptions& options, const RunRequest& request,
-                       const CommandLine& words) {
+                       const Arguments& words) {
   Manifest manifest = manifest_of_data(request);
   manifest.command_line = words;
   manifest.data = options.data;
@@ -123,7 +123,7 @@ RunRequest replay_request(const traces::WorkTrace& trace, const RunOptions& opti
 }
 
 Manifest replay_manifest(const traces::WorkTrace& trace, const InputDigest& digest,
-                         const RunOptions& options, const CommandLine& words) {
+                         const RunOptions& options, const Arguments& words) {
   Manifest manifest;
   manifest.command_line = words;
   manifest.seed = trace.info().seed;

@@ -46,9 +46,10 @@ RunResult simulate_with_progress(const RunRequest& request, RunSource& source,
 Manifest manifest_of_data(const RunRequest& request);
 
 Manifest make_manifest(const RunOptions& options, const RunRequest& request,
-                       const CommandLine& words);
+                       const Arguments& words);
 
-/// The file of what a run recorded, with what the run knows about itself beyond its work.
+/// Ends the file of what a run recorded with what the run knows about itself beyond its work.
+/// @returns its bytes, if the recording holds them
 std::string work_trace_of(WorkRecording recording, const RunOptions& options,
                           const RunRequest& request, const Manifest& manifest);
 
@@ -60,7 +61,7 @@ RunRequest replay_request(const traces::WorkTrace& trace, const RunOptions& opti
 /// @param digest   of the trace
 /// @param options  with the name of the chip
 Manifest replay_manifest(const traces::WorkTrace& trace, const InputDigest& digest,
-                         const RunOptions& options, const CommandLine& words);
+                         const RunOptions& options, const Arguments& words);
 
 /// "leviosim 0.1.0: levio on gap9, 300 frames of DIR, 160x120, 8 cores at 370 MHz, …"
 std::string heading(const RunOptions& options, const RunResult& run);

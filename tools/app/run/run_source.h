@@ -21,7 +21,8 @@ class RunSource : public soc::JobSource {
   /// What the frame that was processed last yielded.
   const FrameResult& frame() const { return frame_; }
 
-  /// Fills in what does not depend on timing, from frames that have been processed.
+  virtual RunSubject subject() const = 0;
+  /// Fills in what else does not depend on timing, from frames that have been processed.
   virtual void describe(RunResult& result) const = 0;
 
  private:

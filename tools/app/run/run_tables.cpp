@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -64,6 +65,13 @@ Column<FrameRow> of_result(std::string key, Of of) {
           }};
 }
 
+/// Of a stage among those of frames.
+std::size_t number_of(const std::string& stage, const RunResult& run) {
+  return static_cast<std::size_t>(
+      std::find(run.frame_stages.begin(), run.frame_stages.end(), stage) -
+      run.frame_stages.begin());
+}
+
 Columns<FrameRow> frame_table_of(const RunResult& run) {
   using F = FrameResult;
   Columns<FrameRow> table;
@@ -90,8 +98,10 @@ Columns<FrameRow> frame_table_of(const RunResult& run) {
     table.push_back(of_result("single_cycles", [](const F& f) { return f.single_cycles; }));
     for (const StageResult& stage : run.stages)
       if (!stage.on_controller)
-        table.push_back(of_result(kStageColumn + key_of(stage.name),
-                                  [name = stage.name](const F& f) { return f.cycles_of(name); }));
+        table.push_back(of_result(
+            kStageColumn + key_of(stage.name), [i = number_of(stage.name, run)](const F& f) {
+              return i < f.stage_cycles.size() ? f.stage_cycles[i] : Cycles(0);
+            }));
   }
   if (run.camera) {
     table.push_back(
@@ -104,22 +114,20 @@ Columns<FrameRow> frame_table_of(const RunResult& run) {
 }
 
 /// All frames; in a closed loop those of the camera, dropped or not.
-std::vector<FrameRow> frames_of_camera(const RunResult& run) {
-  std::vector<FrameRow> rows;
+void each_frame_of_camera(const RunResult& run, const std::function<void(const FrameRow&)>& take) {
   if (!run.camera) {
-    for (const FrameResult& frame : run.frames) rows.push_back({&frame, nullptr, false});
-    return rows;
+    for (const FrameResult& frame : run.frames) take({&frame, nullptr, false});
+    return;
   }
   auto frame = run.frames.begin();
   for (const soc::Delivery& delivery : run.camera->deliveries) {
     if (delivery.dropped)
-      rows.push_back({nullptr, &delivery, true});
+      take({nullptr, &delivery, true});
     else {
-      rows.push_back({&*frame, &delivery, is_late(*frame, run)});
+      take({&*frame, &delivery, is_late(*frame, run)});
       ++frame;
     }
   }
-  return rows;
 }
 
 /// A peak of a memory, or a block that was alive at it.
@@ -214,7 +222,8 @@ Columns<traces::MatchedPose> error_table() {
 Table stage_rows(const RunResult& run) { return table_of(stage_table_of(run), run.stages); }
 
 Table frame_rows(const RunResult& run) {
-  return table_of(frame_table_of(run), frames_of_camera(run));
+  return long_table_of<FrameRow>(frame_table_of(run),
+                                 [&run](const auto& take) { each_frame_of_camera(run, take); });
 }
 
 Table memory_rows(const RunResult& run) {
@@ -235,7 +244,9 @@ Table memory_rows(const RunResult& run) {
 
 Table error_rows(const RunResult& run) {
   if (!run.ate || run.ate->poses.empty()) return Table{{}};
-  return table_of(error_table(), run.ate->poses);
+  return long_table_of<traces::MatchedPose>(error_table(), [&run](const auto& take) {
+    for (const traces::MatchedPose& pose : run.ate->poses) take(pose);
+  });
 }
 
 Table energy_rows(const RunResult& run) {

@@ -1,4 +1,5 @@
-// The tables of a run, as its CSV files hold them; the units stand in the keys.
+// The tables of a run, as its CSV files hold them; the units stand in the keys. Those with a row
+// for each frame or pose do not hold them: the run outlives them.
 #pragma once
 
 #include "tools/app/result/run_result.h"

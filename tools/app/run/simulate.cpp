@@ -23,24 +23,29 @@
 namespace leviosim::tools {
 namespace {
 
-std::vector<StageCycles> stage_cycles(const sim::JobTiming& timing) {
-  std::vector<StageCycles> list;
+/// @param names  of stages; gets those that are new
+std::vector<Cycles> stage_cycles(const sim::JobTiming& timing, std::vector<std::string>& names) {
+  std::vector<Cycles> cycles;
+  cycles.reserve(names.size());
   for (const sim::StageTiming& run : timing.stages) {
-    auto it = std::find_if(list.begin(), list.end(),
-                           [&](const StageCycles& s) { return s.stage == run.stage; });
-    if (it == list.end()) it = list.insert(it, {run.stage, Cycles(0)});
-    it->cycles += run.cycles;
+    const auto name = std::find(names.begin(), names.end(), run.stage);
+    const auto number = static_cast<std::size_t>(name - names.begin());
+    if (name == names.end()) names.emplace_back(run.stage);
+    if (number >= cycles.size()) cycles.resize(number + 1);
+    cycles[number] += run.cycles;
   }
-  return list;
+  return cycles;
 }
 
 /// The last frame may tell where others were after all, which locates them if its map is aligned.
+/// Then nothing of that is kept.
 void correct_earlier(std::vector<FrameResult>& frames) {
   for (const auto& [ago, pose] : frames.back().earlier) {
     FrameResult& frame = frames[frames.size() - 1 - static_cast<std::size_t>(ago)];
     frame.pose = pose;
     frame.state = vio::state_after(frame.state, frames.back().state);
   }
+  frames.back().earlier = {};
 }
 
 /// Joins what the frames yielded with when they were processed.
@@ -48,7 +53,9 @@ class FrameCollector : public soc::Observer {
  public:
   /// @param sample  of jobs, to be filled; may be null
   FrameCollector(const RunSource& source, RunObserver* observer, JobSample* sample)
-      : source_(source), observer_(observer), sample_(sample) {}
+      : source_(source), observer_(observer), sample_(sample) {
+    frames.reserve(static_cast<std::size_t>(source.frames()));
+  }
 
   bool wants_steps() const override { return observer_ != nullptr && observer_->wants_steps(); }
 
@@ -56,7 +63,7 @@ class FrameCollector : public soc::Observer {
     FrameResult& frame = frames.emplace_back(source_.frame());
     correct_earlier(frames);
     static_cast<soc::FrameTiming&>(frame) = e.times;
-    frame.stage_cycles = stage_cycles(e.parallel);
+    frame.stage_cycles = stage_cycles(e.parallel, stages);
     if (sample_ != nullptr) sample_->add_frame(e.job, e.times.cycles);
     if (observer_ != nullptr)
       observer_->on_front_end({e.frame, e.optimisation_begun, frame, e.job, e.parallel, e.single});
@@ -67,6 +74,7 @@ class FrameCollector : public soc::Observer {
   }
 
   std::vector<FrameResult> frames;
+  std::vector<std::string> stages;  ///< RunResult::frame_stages
 
  private:
   const RunSource& source_;
@@ -91,6 +99,7 @@ void describe(RunResult& result, const RunRequest& request, const RunSource& sou
     else
       ++result.poses_left_out;
   }
+  static_cast<RunSubject&>(result) = source.subject();
   source.describe(result);
 }
 
@@ -175,7 +184,7 @@ RunResult simulate_source(const RunRequest& request, RunSource& source,
                           const ProgressCallback& progress) {
   soc::Setup setup{request.platform.config, request.cores, {}, request.on_one_core};
   if (request.camera) setup.deadline = request.camera->deadline;
-  if (request.observer != nullptr) request.observer->on_start(source.frames());
+  if (request.observer != nullptr) request.observer->on_start(source.subject(), source.frames());
   JobSample sample;
   FrameCollector collector(source, request.observer,
                            request.time_bands == TimeBandsOf::nothing ? nullptr : &sample);
@@ -184,6 +193,7 @@ RunResult simulate_source(const RunRequest& request, RunSource& source,
   result.stages = std::move(outcome.stages);
   result.offload = outcome.offload;
   result.frames = std::move(collector.frames);
+  result.frame_stages = std::move(collector.stages);
   result.camera = std::move(outcome.camera);
   result.optimiser_published = outcome.optimiser_published;
   result.optimiser_late = outcome.optimiser_late;

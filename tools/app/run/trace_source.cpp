@@ -100,12 +100,13 @@ std::vector<StageResult> stages_of(const traces::WorkTrace& trace) {
 
 void TraceSource::describe(RunResult& result) const { describe_recording(trace_, result); }
 
+RunSubject subject_of(const traces::WorkTrace& trace) {
+  const traces::WorkTraceInfo& info = trace.info();
+  return {info.profile, info.frame_period_ns, info.image_width, info.image_height};
+}
+
 void describe_recording(const traces::WorkTrace& trace, RunResult& result) {
   const traces::WorkTraceInfo& info = trace.info();
-  result.profile = info.profile;
-  result.frame_period_ns = info.frame_period_ns;
-  result.image_width = info.image_width;
-  result.image_height = info.image_height;
   for (const traces::WorkTraceInfo::Memory& memory : info.l2)
     (memory.name == kOptimiserExternal ? result.external : result.l2)
         .push_back({memory.name, memory.bytes, memory.blocks});

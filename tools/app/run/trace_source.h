@@ -35,6 +35,10 @@ struct FrameComparison {
 /// RunSource::empty_stages() of recorded work.
 std::vector<StageResult> stages_of(const traces::WorkTrace& trace);
 
+/// RunSource::subject() and describe() of recorded work.
+RunSubject subject_of(const traces::WorkTrace& trace);
+void describe_recording(const traces::WorkTrace& trace, RunResult& result);
+
 class TraceSource : public RunSource {
  public:
   /// @param trace  outlives the source and all names in what it gives
@@ -56,6 +60,7 @@ class TraceSource : public RunSource {
   const work::Job& optimise() override;
   void publish() override {}
   std::vector<StageResult> empty_stages() const override { return stages_of(trace_); }
+  RunSubject subject() const override { return subject_of(trace_); }
   void describe(RunResult& result) const override;
 
   /// Of the frames so far.
@@ -78,8 +83,5 @@ class TraceSource : public RunSource {
 /// @throws work::MemoryOverflow naming the frame and the stage whose recorded work does not fit
 void check_fits(const traces::WorkTrace& trace, int frame, const work::Job& job, const char* memory,
                 Bytes size);
-
-/// RunSource::describe() of recorded work.
-void describe_recording(const traces::WorkTrace& trace, RunResult& result);
 
 }  // namespace leviosim::tools

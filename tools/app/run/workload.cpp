@@ -61,12 +61,9 @@ class FrameByFrame : public RunSource {
   std::vector<StageResult> empty_stages() const override {
     return named_stages(stages_of(request_));
   }
+  RunSubject subject() const override { return subject_of(workload_.name, feed_); }
   void describe(RunResult& result) const override {
-    result.profile = workload_.name;
-    result.frame_period_ns = std::llround(1e9 / feed_.rate_hz());
     if (result.camera) result.camera->fps = feed_.rate_hz();
-    result.image_width = feed_.rig().width;
-    result.image_height = feed_.rig().height;
   }
 
  private:

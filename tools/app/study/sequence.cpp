@@ -68,7 +68,8 @@ Sequence open_sequence(const NamedFolder& named, const std::optional<traces::Fra
     throw InputError(fmt::format("--data {}: has no ground truth", named.folder));
   std::vector<std::int64_t> stamps_ns;
   for (const traces::FrameRef& frame : data.frames) stamps_ns.push_back(frame.t_ns);
-  traces::require_truth_at(data, stamps_ns);
+  traces::Trajectory truth = traces::to_trajectory(data.ground_truth);
+  traces::require_truth_at(truth, data.truth_csv, stamps_ns);
   for (const traces::ImageSize& size : sizes) {
     try {
       traces::make_decimation(data.camera, size);
@@ -78,7 +79,7 @@ Sequence open_sequence(const NamedFolder& named, const std::optional<traces::Fra
   }
   const std::string digest = digest_of(data);
   return {named.name,           named.folder,           digest,
-          data.frames.size(),   path_over_frames(data), traces::to_trajectory(data.ground_truth),
+          data.frames.size(),   path_over_frames(data), std::move(truth),
           work_of(data, digest)};
 }
 

@@ -46,7 +46,7 @@ std::string page_of(const Study& study, Answer& found) {
 }
 
 /// The content of manifest.json. Nothing in it depends on the host or on what was in caches.
-std::string manifest_of(const Study& study, const Answer& found, const CommandLine& command_line) {
+std::string manifest_of(const Study& study, const Answer& found, const Arguments& command_line) {
   Json document;
   document["format"] = fmt::format("leviosim {} manifest", study.name);
   document["version"] = 1;
@@ -59,7 +59,7 @@ std::string manifest_of(const Study& study, const Answer& found, const CommandLi
 }
 
 void publish_answer(const Study& study, const Answer& found, const std::string& page_text,
-                    const Printout& shown, const CommandLine& command_line, Places& places) {
+                    const Printout& shown, const Arguments& command_line, Places& places) {
   const FileOutput page{places.page, page_text, "report"};
   if (!places.folder) {
     publish({{places.csv, places.csv ? csv_text(found.rows) : "", "table"}, page}, shown);
@@ -97,7 +97,7 @@ void add_study_options(CLI::App& command, const Study& study, StudyOptions& opti
 }
 
 void run_study(const Study& study, const StudyOptions& options,
-               std::vector<std::filesystem::path> inputs, const CommandLine& command_line,
+               std::vector<std::filesystem::path> inputs, const Arguments& command_line,
                const std::function<Answer(const RunnerOptions&)>& answer) {
   const RunnerOptions runner = runner_options(options.runner, study.noun, options.quiet);
   Places places;

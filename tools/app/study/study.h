@@ -70,17 +70,17 @@ void add_study_options(CLI::App& command, const Study& study, StudyOptions& opti
 /// @param command_line  for the manifest
 /// @throws InputError, Interrupted, LimitNotMet
 void run_study(const Study& study, const StudyOptions& options,
-               std::vector<std::filesystem::path> inputs, const CommandLine& command_line,
+               std::vector<std::filesystem::path> inputs, const Arguments& command_line,
                const std::function<Answer(const RunnerOptions&)>& answer);
 
 /// A study as a command. @param declare  its options besides
 /// @param inputs   as of run_study(); checks what can be checked without work
 /// @param answer   computes it
 template <class Options>
-Command add_study(CLI::App& app, const CommandLine& words, const Study& study,
+Command add_study(CLI::App& app, const Arguments& words, const Study& study,
                   void (*declare)(CLI::App&, Options&),
                   std::vector<std::filesystem::path> (*inputs)(const Options&),
-                  Answer (*answer)(const Options&, const RunnerOptions&, const CommandLine&)) {
+                  Answer (*answer)(const Options&, const RunnerOptions&, const Arguments&)) {
   CLI::App* command = add_study_command(app, study);
   const auto options = std::make_shared<Options>();
   declare(*command, *options);

@@ -45,30 +45,59 @@ using Columns = std::vector<Column<Row>>;
 
 class Table {
  public:
+  using TakeRow = std::function<void(const std::vector<Cell>&)>;
+
   explicit Table(std::vector<Head> heads) : heads_(std::move(heads)) {}
+  /// Of more rows than are held: each is made when it is asked for.
+  /// @param make_rows  hands over all of them
+  Table(std::vector<Head> heads, std::function<void(const TakeRow&)> make_rows)
+      : heads_(std::move(heads)), make_rows_(std::move(make_rows)) {}
 
   /// One cell per column.
   void add(std::vector<Cell> cells);
 
   const std::vector<Head>& heads() const { return heads_; }
-  const std::vector<std::vector<Cell>>& rows() const { return rows_; }
+  /// Of a table whose rows are held.
+  const std::vector<std::vector<Cell>>& rows() const;
+  /// Of any table.
+  void each_row(const TakeRow& take) const;
 
  private:
   std::vector<Head> heads_;
   std::vector<std::vector<Cell>> rows_;
+  std::function<void(const TakeRow&)> make_rows_;
 };
+
+template <class Row>
+std::vector<Head> heads_of(const Columns<Row>& columns) {
+  std::vector<Head> heads;
+  for (const Column<Row>& column : columns) heads.push_back(column.head);
+  return heads;
+}
+
+template <class Row>
+std::vector<Cell> cells_of(const Columns<Row>& columns, const Row& row) {
+  std::vector<Cell> cells;
+  for (const Column<Row>& column : columns) cells.push_back(column.value(row));
+  return cells;
+}
 
 template <class Row, class Rows>
 Table table_of(const Columns<Row>& columns, const Rows& rows) {
-  std::vector<Head> heads;
-  for (const Column<Row>& column : columns) heads.push_back(column.head);
-  Table table(std::move(heads));
-  for (const Row& row : rows) {
-    std::vector<Cell> cells;
-    for (const Column<Row>& column : columns) cells.push_back(column.value(row));
-    table.add(std::move(cells));
-  }
+  Table table(heads_of(columns));
+  for (const Row& row : rows) table.add(cells_of(columns, row));
   return table;
+}
+
+/// A table whose rows are not held. @param for_each  calls its argument with each row
+template <class Row>
+Table long_table_of(Columns<Row> columns,
+                    std::function<void(const std::function<void(const Row&)>&)> for_each) {
+  std::vector<Head> heads = heads_of(columns);
+  return Table(std::move(heads), [columns = std::move(columns),
+                                  for_each = std::move(for_each)](const Table::TakeRow& take) {
+    for_each([&](const Row& row) { take(cells_of(columns, row)); });
+  });
 }
 
 }  // namespace leviosim::tools

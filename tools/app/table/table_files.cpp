@@ -108,18 +108,23 @@ std::string csv_line(const std::vector<std::string>& cells) {
 }
 
 std::string csv_text(const Table& table) {
+  std::string text;
+  write_csv(table, [&](std::string_view line) { text += line; });
+  return text;
+}
+
+void write_csv(const Table& table, const std::function<void(std::string_view)>& sink) {
   const std::vector<FileColumn> columns = file_columns(table);
-  if (columns.empty()) return {};
+  if (columns.empty()) return;
   std::vector<std::string> cells;
   for (const FileColumn& column : columns) cells.push_back(column.key);
-  std::string text = csv_line(cells);
-  for (const std::vector<Cell>& row : table.rows()) {
+  sink(csv_line(cells));
+  table.each_row([&](const std::vector<Cell>& row) {
     cells.clear();
     for (const FileColumn& column : columns)
       cells.push_back(std::visit(FileText{column.decimals}, column.cell(row).value()));
-    text += csv_line(cells);
-  }
-  return text;
+    sink(csv_line(cells));
+  });
 }
 
 Table read_csv(const std::string& where, const std::string& text) {
@@ -144,23 +149,26 @@ Table read_csv(const std::string& where, const std::string& text) {
 Json rows_json(const Table& table) {
   const std::vector<FileColumn> columns = file_columns(table);
   Json rows = Json::array();
-  for (const std::vector<Cell>& row : table.rows()) {
+  table.each_row([&](const std::vector<Cell>& row) {
     Json& json = rows.emplace_back(Json::object());
     for (const FileColumn& column : columns)
       json[column.key] = std::visit(JsonValue{column.decimals}, column.cell(row).value());
-  }
+  });
   return rows;
 }
 
 Json columns_json(const Table& table, const std::function<bool(const std::string&)>& wanted) {
   Json json = Json::object();
-  for (const FileColumn& column : file_columns(table)) {
+  std::vector<FileColumn> columns = file_columns(table);
+  if (wanted) std::erase_if(columns, [&](const FileColumn& c) { return !wanted(c.key); });
+  for (const FileColumn& column : columns) json[column.key] = Json::array();
+  std::vector<Json*> lists;
+  for (const FileColumn& column : columns) lists.push_back(&json[column.key]);
+  table.each_row([&](const std::vector<Cell>& row) {
     throw_if_interrupted();
-    if (wanted && !wanted(column.key)) continue;
-    Json& cells = json[column.key] = Json::array();
-    for (const std::vector<Cell>& row : table.rows())
-      cells.push_back(std::visit(JsonValue{column.decimals}, column.cell(row).value()));
-  }
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      lists[c]->push_back(std::visit(JsonValue{columns[c].decimals}, columns[c].cell(row).value()));
+  });
   return json;
 }
 

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/app/table/json.h"
@@ -13,6 +14,8 @@
 namespace leviosim::tools {
 
 std::string csv_text(const Table& table);
+/// The same by pieces.
+void write_csv(const Table& table, const std::function<void(std::string_view)>& sink);
 
 /// One line of CSV, for tables that are too large to be held.
 std::string csv_line(const std::vector<std::string>& cells);

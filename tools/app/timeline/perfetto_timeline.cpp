@@ -3,13 +3,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <iterator>
+#include <utility>
+#include <vector>
 
-#include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy_summary.h"
 #include "tools/app/timeline/core_slices.h"
 #include "tools/app/timeline/joined_steps.h"
+#include "tools/app/timeline/timeline_collector.h"
 #include "tools/app/timeline/track_events.h"
+#include "workload/vio/odometry/odometry.h"
 
 namespace leviosim::tools {
 namespace {
@@ -25,35 +27,59 @@ constexpr double kMilliwatts = 1e3;
 std::uint64_t flow_of_frame(int frame) { return 2 * static_cast<std::uint64_t>(frame) + 2; }
 std::uint64_t flow_of_snapshot(int frame) { return flow_of_frame(frame) + 1; }
 
-class Timeline {
+/// What of L2 stays occupied between the iterations; the camera's part is in no stage's peak.
+Bytes resting_l2(const work::StageRun& stage) {
+  for (const work::Block& block : stage.memory.blocks)
+    if (block.name == vio::kPersistentBlock) return block.size;
+  return {};
+}
+
+}  // namespace
+
+class PerfettoTimeline::Writer {
  public:
-  Timeline(const TimelineEvents& events, const RunResult& run)
-      : events_(events), run_(run), energy_(energy_of(run)) {
-    add_tracks();
+  Writer(const sim::ChipConfig& chip, const Options& options, outputs::Sink sink)
+      : chip_(chip),
+        options_(options),
+        sink_(std::move(sink)),
+        collector_(chip, options.cores, options.range),
+        energy_(sim::knows_energy(chip)) {
+    RunResult nothing;
+    nothing.chip = chip;
+    nothing.cores = options.cores;
+    if (const auto energy = energy_of(nothing, Seconds(1)))
+      idle_power_ = energy->rows.back().power();
   }
 
-  void add_camera();
-  void add_frame(const FrameEvents& frame, std::size_t most_bytes);
-  void add_counters(const FrameEvents& frame);
-  void add_optimiser();
-
-  std::string bytes() const { return writer_.bytes(); }
+  void begin(const RunSubject& subject, int frames);
+  void add_front_end(const FrontEndJob& job);
+  void add_iteration(const OptimiserJob& job);
+  void end(const RunResult& run);
 
  private:
-  std::int64_t ns(sim::Time time) const { return nanoseconds(events_.timebase, time); }
+  const TimelineEvents& events() const { return collector_.events(); }
+  std::int64_t ns(sim::Time time) const { return nanoseconds(events().timebase, time); }
+  bool is_late(const soc::FrameTiming& times) const {
+    return times.end_ns - times.arrival_ns > subject_.frame_period_ns;
+  }
   void add_tracks();
+  void add_camera(const RunResult& run);
   void add_arrival(int frame, std::int64_t arrival_ns, bool dropped, bool late);
+  void add_frame(const FrameEvents& frame);
   void add_slices(const FrameEvents& frame, Cycles shortest);
-  void add_front_end(const FrameEvents& frame);
-  using Iterations = std::vector<IterationEvents>::const_iterator;
-  void add_optimisation(Iterations first, Iterations end);
-  void add_iteration(const IterationEvents& iteration);
-  Bytes resting_l2() const;
-  Bytes camera_l2() const;
+  void add_front_end_slices(const FrameEvents& frame);
+  void add_counters(const FrameEvents& frame);
+  void add_iteration(const IterationEvents& iteration, const work::Job& job);
+  void end_optimisation();
+  void flush() { sink_(writer_.take()); }
 
-  const TimelineEvents& events_;
-  const RunResult& run_;
-  std::optional<RunEnergy> energy_;
+  const sim::ChipConfig& chip_;
+  Options options_;
+  outputs::Sink sink_;
+  TimelineCollector collector_;  ///< of what is not written yet
+  bool energy_;                  ///< is known
+  RunSubject subject_;
+  Bytes camera_l2_;
   ClusterTracks cluster_;
   std::uint64_t controller_ = 0;
   std::uint64_t l1_ = 0;
@@ -61,9 +87,16 @@ class Timeline {
   std::uint64_t stage_power_ = 0;
   std::uint64_t controller_power_ = 0;
   TrackEventWriter writer_;
+  std::optional<sim::Estimate<Watts>> idle_power_;  ///< of the cluster without work
+  /// Of the optimisation that has begun and has not ended.
+  struct Open {
+    std::int64_t end_ns = 0;  ///< of its last iteration so far
+    Bytes resting;            ///< of L2, after it
+  };
+  std::optional<Open> open_;
 };
 
-void Timeline::add_tracks() {
+void PerfettoTimeline::Writer::add_tracks() {
   int rank = 0;
   std::uint64_t number = kFirstCore;
   const auto add = [&](std::string_view name, std::uint64_t track) {
@@ -74,12 +107,12 @@ void Timeline::add_tracks() {
     writer_.add_counter_track({number, name, kRoot, rank++}, unit);
     return number++;
   };
-  writer_.add_root({kRoot, fmt::format("leviosim: {} on {}", run_.profile, run_.chip.name)});
+  writer_.add_root({kRoot, fmt::format("leviosim: {} on {}", subject_.profile, chip_.name)});
   add("camera", kCamera);
   add("deadlines", kDeadlines);
   add("front end", kFrontEnd);
   const std::uint64_t master = add("master", number++);
-  for (int core = 0; core < events_.cores; ++core)
+  for (int core = 0; core < events().cores; ++core)
     cluster_.cores.push_back(add(fmt::format("core {}", core), number++));
   cluster_.cores.push_back(master);
   cluster_.to_l1 = add("DMA, L2 to L1", number++);
@@ -92,38 +125,39 @@ void Timeline::add_tracks() {
   controller_power_ = add_counter("power of the controller", CounterUnit::Milliwatts);
 }
 
-void Timeline::add_arrival(int frame, std::int64_t arrival_ns, bool dropped, bool late) {
-  if (!events_.holds(frame)) return;
+void PerfettoTimeline::Writer::add_arrival(int frame, std::int64_t arrival_ns, bool dropped,
+                                           bool late) {
+  if (!events().holds(frame)) return;
   const std::string name = fmt::format("frame {}{}", frame, dropped ? " dropped" : "");
   EventText arrival{name, true, {{"frame", std::int64_t{frame}}, {"dropped", dropped}}};
   if (!dropped) arrival.flows = {flow_of_frame(frame)};
   writer_.instant(kCamera, arrival_ns, arrival);
-  writer_.instant(kDeadlines, arrival_ns + run_.frame_period_ns,
+  writer_.instant(kDeadlines, arrival_ns + subject_.frame_period_ns,
                   {dropped || late ? "deadline missed" : "deadline met",
                    false,
                    {{"frame", std::int64_t{frame}}}});
 }
 
-void Timeline::add_camera() {
-  if (!run_.camera) {
-    for (const FrameResult& frame : run_.frames)
-      add_arrival(frame.index, frame.arrival_ns, false, is_late(frame, run_));
-    return;
-  }
-  auto frame = run_.frames.begin();
-  for (const soc::Delivery& delivery : run_.camera->deliveries) {
-    const bool late = !delivery.dropped && is_late(*frame, run_);
-    add_arrival(delivery.frame, delivery.arrival_ns, delivery.dropped, late);
-    if (!delivery.dropped) ++frame;
+void PerfettoTimeline::Writer::add_camera(const RunResult& run) {
+  auto frame = run.frames.begin();
+  const std::size_t arrivals = run.camera ? run.camera->deliveries.size() : run.frames.size();
+  for (std::size_t i = 0; i < arrivals; ++i) {
+    const soc::Delivery* delivery = run.camera ? &run.camera->deliveries[i] : nullptr;
+    const bool dropped = delivery != nullptr && delivery->dropped;
+    add_arrival(delivery != nullptr ? delivery->frame : frame->index,
+                delivery != nullptr ? delivery->arrival_ns : frame->arrival_ns, dropped,
+                !dropped && is_late(*frame));
+    if (!dropped) ++frame;
+    flush();
   }
 }
 
 /// Steps that are shorter than the least of 0, 100, 200, 400 … cycles with which it fits are
 /// joined.
-void Timeline::add_frame(const FrameEvents& frame, std::size_t most_bytes) {
+void PerfettoTimeline::Writer::add_frame(const FrameEvents& frame) {
   const TrackEventWriter::Mark mark = writer_.mark();
   add_slices(frame, Cycles(0));
-  for (Cycles shortest = kFirstShortest; writer_.size() - mark.bytes > most_bytes;
+  for (Cycles shortest = kFirstShortest; writer_.size() - mark.bytes > options_.most_bytes;
        shortest = shortest * 2) {
     writer_.rewind(mark);
     add_slices(frame, shortest);
@@ -131,16 +165,16 @@ void Timeline::add_frame(const FrameEvents& frame, std::size_t most_bytes) {
   }
 }
 
-void Timeline::add_slices(const FrameEvents& frame, Cycles shortest) {
-  add_front_end(frame);
-  CoreSlices cores(cluster_, events_.timebase, frame.work_begin, writer_);
+void PerfettoTimeline::Writer::add_slices(const FrameEvents& frame, Cycles shortest) {
+  add_front_end_slices(frame);
+  CoreSlices cores(cluster_, events().timebase, frame.work_begin, writer_);
   for (const StageEvents& stage : frame.stages) cores.add(with_short_steps_joined(stage, shortest));
 }
 
-void Timeline::add_front_end(const FrameEvents& frame) {
+void PerfettoTimeline::Writer::add_front_end_slices(const FrameEvents& frame) {
   const FrameResult& result = frame.result;
   const std::string name = fmt::format("frame {}", frame.frame);
-  const bool late = is_late(result, run_);
+  const bool late = is_late(result);
   EventText text{name,
                  true,
                  {{"frame", std::int64_t{frame.frame}},
@@ -154,7 +188,7 @@ void Timeline::add_front_end(const FrameEvents& frame) {
   if (frame.optimisation_begun)
     writer_.instant(kFrontEnd, result.start_ns,
                     {"snapshot", false, {}, {flow_of_snapshot(frame.frame)}});
-  const sim::ClockDomain& clock = events_.timebase.clock("cluster");
+  const sim::ClockDomain& clock = events().timebase.clock("cluster");
   for (const StageEvents& stage : frame.stages) {
     const std::int64_t cycle = clock.whole_cycles(stage.begin - frame.work_begin).count();
     writer_.begin(kFrontEnd, ns(stage.begin),
@@ -166,7 +200,7 @@ void Timeline::add_front_end(const FrameEvents& frame) {
                   {late ? "pose, late" : "pose", false, {}, {}, {flow_of_frame(frame.frame)}});
 }
 
-void Timeline::add_counters(const FrameEvents& frame) {
+void PerfettoTimeline::Writer::add_counters(const FrameEvents& frame) {
   for (const StageEvents& stage : frame.stages) {
     writer_.counter(l1_, ns(stage.begin), stage.memory.count());
     if (stage.power)
@@ -175,79 +209,93 @@ void Timeline::add_counters(const FrameEvents& frame) {
   if (frame.stages.empty()) return;
   const std::int64_t end_ns = ns(frame.stages.back().end);
   writer_.counter(l1_, end_ns, std::int64_t{0});
-  if (!energy_) return;
-  if (const auto idle = energy_->rows.back().power())
-    writer_.counter(stage_power_, end_ns, idle->value.count() * kMilliwatts);
+  if (idle_power_) writer_.counter(stage_power_, end_ns, idle_power_->value.count() * kMilliwatts);
 }
 
-/// While no stage of the controller runs. What the camera keeps is not in the peak of a stage.
-Bytes Timeline::resting_l2() const {
-  Bytes sum;
-  for (const L2Row& row : run_.l2)
-    if (row.name != kOptimiserL2) sum += row.bytes;
-  return sum;
-}
-
-Bytes Timeline::camera_l2() const {
-  Bytes sum;
-  for (const L2Row& row : run_.l2)
-    if (row.name == kCameraL2) sum += row.bytes;
-  return sum;
-}
-
-void Timeline::add_iteration(const IterationEvents& iteration) {
-  for (const StageEvents& stage : iteration.stages) {
+/// Within a slice from the first to the last of the optimisation, with the arrow from its snapshot.
+void PerfettoTimeline::Writer::add_iteration(const IterationEvents& iteration,
+                                             const work::Job& job) {
+  const std::uint64_t flow = flow_of_snapshot(iteration.frame);
+  if (!open_) {
+    writer_.begin(controller_, ns(iteration.begin),
+                  {"optimisation", false, {{"frame", std::int64_t{iteration.frame}}}, {flow}});
+    open_.emplace();
+  }
+  for (std::size_t i = 0; i < iteration.stages.size(); ++i) {
+    const StageEvents& stage = iteration.stages[i];
     const std::int64_t begin_ns = ns(stage.begin);
+    open_->resting = resting_l2(job.stages[i]) + camera_l2_;
     writer_.begin(
         controller_, begin_ns,
         {stage.name,
          false,
          {{"iteration", std::int64_t{iteration.iteration}}, {"cycles", stage.cycles.count()}}});
     writer_.end(controller_, ns(stage.end));
-    writer_.counter(l2_, begin_ns, std::max(resting_l2(), stage.memory + camera_l2()).count());
+    writer_.counter(l2_, begin_ns, std::max(open_->resting, stage.memory + camera_l2_).count());
     if (stage.power)
       writer_.counter(controller_power_, begin_ns, stage.power->count() * kMilliwatts);
   }
+  open_->end_ns = ns(iteration.end);
+  if (!iteration.last) return;
+  const std::int64_t end_ns = open_->end_ns;
+  end_optimisation();
+  writer_.instant(controller_, end_ns, {"published", false, {}, {}, {flow}});
 }
 
-/// Its iterations, within a slice from the first to the last, and the arrow from its snapshot.
-void Timeline::add_optimisation(Iterations first, Iterations end) {
-  const int frame = first->frame;
-  writer_.begin(
-      controller_, ns(first->begin),
-      {"optimisation", false, {{"frame", std::int64_t{frame}}}, {flow_of_snapshot(frame)}});
-  for (Iterations i = first; i != end; ++i) add_iteration(*i);
-  const IterationEvents& last = *std::prev(end);
-  const std::int64_t end_ns = ns(last.end);
-  writer_.end(controller_, end_ns);
-  if (last.last)
-    writer_.instant(controller_, end_ns, {"published", false, {}, {}, {flow_of_snapshot(frame)}});
-  writer_.counter(l2_, end_ns, resting_l2().count());
-  if (energy_) writer_.counter(controller_power_, end_ns, 0.0);
+void PerfettoTimeline::Writer::end_optimisation() {
+  if (!open_) return;
+  writer_.end(controller_, open_->end_ns);
+  writer_.counter(l2_, open_->end_ns, open_->resting.count());
+  if (energy_) writer_.counter(controller_power_, open_->end_ns, 0.0);
+  open_.reset();
 }
 
-void Timeline::add_optimiser() {
-  const std::vector<IterationEvents>& list = events_.iterations;
-  for (Iterations first = list.begin(); first != list.end();) {
-    const Iterations end = std::find_if(
-        first, list.end(), [&](const IterationEvents& i) { return i.frame != first->frame; });
-    add_optimisation(first, end);
-    first = end;
+void PerfettoTimeline::Writer::begin(const RunSubject& subject, int frames) {
+  collector_.on_start(subject, frames);
+  subject_ = subject;
+  if (options_.is_closed)
+    camera_l2_ = soc::second_buffer(subject.image_width, subject.image_height);
+  add_tracks();
+  flush();
+}
+
+void PerfettoTimeline::Writer::add_front_end(const FrontEndJob& job) {
+  collector_.on_front_end(job);
+  for (const FrameEvents& frame : events().frames) {
+    add_frame(frame);
+    add_counters(frame);
   }
+  collector_.forget();
+  flush();
 }
 
-}  // namespace
-
-std::string perfetto_timeline(const TimelineEvents& events, const RunResult& run,
-                              std::size_t most_bytes_of_frame) {
-  Timeline timeline(events, run);
-  timeline.add_camera();
-  for (const FrameEvents& frame : events.frames) {
-    timeline.add_frame(frame, most_bytes_of_frame);
-    timeline.add_counters(frame);
-  }
-  timeline.add_optimiser();
-  return timeline.bytes();
+void PerfettoTimeline::Writer::add_iteration(const OptimiserJob& job) {
+  collector_.on_optimiser(job);
+  for (const IterationEvents& iteration : events().iterations) add_iteration(iteration, job.job);
+  collector_.forget();
+  flush();
 }
+
+void PerfettoTimeline::Writer::end(const RunResult& run) {
+  end_optimisation();
+  flush();
+  add_camera(run);
+}
+
+PerfettoTimeline::PerfettoTimeline(const sim::ChipConfig& chip, const Options& options,
+                                   outputs::Sink sink)
+    : writer_(std::make_unique<Writer>(chip, options, std::move(sink))) {}
+
+PerfettoTimeline::~PerfettoTimeline() = default;
+
+void PerfettoTimeline::on_start(const RunSubject& subject, int frames) {
+  writer_->begin(subject, frames);
+}
+
+void PerfettoTimeline::on_front_end(const FrontEndJob& job) { writer_->add_front_end(job); }
+
+void PerfettoTimeline::on_optimiser(const OptimiserJob& job) { writer_->add_iteration(job); }
+
+void PerfettoTimeline::finish(const RunResult& run) { writer_->end(run); }
 
 }  // namespace leviosim::tools

@@ -8,7 +8,6 @@
 #include "tools/app/cli/command_line.h"
 #include "tools/app/cli/outputs.h"
 #include "tools/app/cli/printout.h"
-#include "tools/app/timeline/perfetto_timeline.h"
 #include "tools/app/timeline/timeline_picture.h"
 
 namespace leviosim::tools {
@@ -23,6 +22,10 @@ std::optional<traces::FrameRange> range_of(const std::string& text) {
   } catch (const InputError& error) {
     throw InputError(fmt::format("--timeline-frames: {}", error.what()));
   }
+}
+
+bool is_picture(const std::string& file) {
+  return std::filesystem::path(file).extension() == ".svg";
 }
 
 /// A folder of results appears as a whole; a file in it would be lost or in its way.
@@ -70,23 +73,40 @@ void add_timeline_options(CLI::App& command, TimelineOptions& options) {
 RequestedTimeline::RequestedTimeline(const TimelineOptions& options,
                                      const outputs::OutputRequest& results,
                                      const RunRequest& request)
-    : name_(options.file),
-      is_picture_(std::filesystem::path(name_).extension() == ".svg"),
-      chosen_(is_picture_ && options.frames.empty()),
-      collector_(request.platform.config, request.cores, range_of(options.frames),
-                 chosen_ ? kFramesOfPicture : 0),
-      file_(claimed_file(file_request(options.file, results))) {}
+    : chosen_(is_picture(options.file) && options.frames.empty()),
+      file_(claimed_file(file_request(options.file, results))) {
+  const sim::ChipConfig& chip = request.platform.config;
+  const std::optional<traces::FrameRange> range = range_of(options.frames);
+  if (is_picture(options.file)) {
+    picture_.emplace(chip, request.cores, range, chosen_ ? kFramesOfPicture : 0);
+    return;
+  }
+  spool_ = std::make_unique<outputs::Spool>(file_->spool());
+  timeline_.emplace(
+      chip,
+      PerfettoTimeline::Options{
+          .cores = request.cores, .is_closed = request.camera.has_value(), .range = range},
+      [spool = spool_.get()](std::string_view bytes) { spool->add(bytes); });
+}
+
+RunObserver& RequestedTimeline::observer() {
+  if (picture_) return *picture_;
+  return *timeline_;
+}
 
 void RequestedTimeline::publish(const RunResult& run, bool prints_name) {
   std::string label = "timeline";
-  if (chosen_ && collector_.events().range)
+  const Printout nothing("", !prints_name);
+  if (timeline_) {
+    timeline_->finish(run);
+    tools::publish({{file_, spool_->content(), label}}, nothing);
+    return;
+  }
+  if (chosen_ && picture_->events().range)
     label += fmt::format(" of frames {}:{} (--timeline-frames A:B for others)",
-                         collector_.events().range->begin, collector_.events().range->end);
-  tools::publish({{file_,
-                   is_picture_ ? timeline_picture(collector_.events(), run)
-                               : perfetto_timeline(collector_.events(), run),
-                   label}},
-                 Printout("", !prints_name));
+                         picture_->events().range->begin, picture_->events().range->end);
+  const std::string svg = timeline_picture(picture_->events(), run);
+  tools::publish({{file_, svg, label}}, nothing);
 }
 
 std::optional<RequestedTimeline> requested_timeline(const TimelineOptions& options,

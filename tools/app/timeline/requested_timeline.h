@@ -8,6 +8,7 @@
 #include "sim/outputs/output_folder.h"
 #include "tools/app/run/run_observer.h"
 #include "tools/app/run/run_request.h"
+#include "tools/app/timeline/perfetto_timeline.h"
 #include "tools/app/timeline/timeline_collector.h"
 
 namespace CLI {
@@ -33,17 +34,17 @@ class RequestedTimeline {
                     const RunRequest& request);
 
   /// To look on while the run happens.
-  RunObserver& observer() { return collector_; }
+  RunObserver& observer();
   /// Writes the file: a picture if its name ends in .svg. @throws InputError if that fails
   /// @param prints_name  with a line that tells its name; not where the printout is whole (JSON)
   void publish(const RunResult& run, bool prints_name);
 
  private:
-  std::string name_;
-  bool is_picture_;
   bool chosen_;  ///< its frames, since the user named none
-  TimelineCollector collector_;
   std::optional<outputs::OutputFile> file_;
+  std::optional<TimelineCollector> picture_;  ///< events of what becomes a picture
+  std::unique_ptr<outputs::Spool> spool_;     ///< of the file otherwise
+  std::optional<PerfettoTimeline> timeline_;
 };
 
 /// None without --timeline. @throws InputError as RequestedTimeline, and for --timeline-frames

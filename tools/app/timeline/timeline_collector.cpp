@@ -38,7 +38,7 @@ TimelineCollector::TimelineCollector(const sim::ChipConfig& chip, int cores,
   job_run_.cores = cores;
 }
 
-void TimelineCollector::on_start(int frames) {
+void TimelineCollector::on_start(const RunSubject&, int frames) {
   if (middle_ > 0 && frames > middle_) {
     const auto begin = static_cast<std::size_t>((frames - middle_) / 2);
     events_.range = traces::FrameRange{begin, begin + static_cast<std::size_t>(middle_)};
@@ -63,6 +63,11 @@ void TimelineCollector::on_optimiser(const OptimiserJob& job) {
   if (!events_.holds(job.frame)) return;
   events_.iterations.push_back({job.frame, job.iteration, job.last, job.timing.begin,
                                 job.timing.end, stages_of(job.job, job.timing, true)});
+}
+
+void TimelineCollector::forget() {
+  events_.frames.clear();
+  events_.iterations.clear();
 }
 
 std::vector<StageEvents> TimelineCollector::stages_of(const work::Job& job,

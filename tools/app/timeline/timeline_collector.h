@@ -18,11 +18,13 @@ class TimelineCollector : public RunObserver {
 
   bool wants_steps() const override { return true; }
   /// @throws InputError for a range that is not of the run
-  void on_start(int frames) override;
+  void on_start(const RunSubject& subject, int frames) override;
   void on_front_end(const FrontEndJob& job) override;
   void on_optimiser(const OptimiserJob& job) override;
 
   const TimelineEvents& events() const { return events_; }
+  /// What happened is known elsewhere now.
+  void forget();
 
  private:
   std::vector<StageEvents> stages_of(const work::Job& job, const sim::JobTiming& timing,

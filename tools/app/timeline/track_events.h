@@ -12,6 +12,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -68,7 +69,8 @@ class TrackEventWriter {
   void rewind(const Mark& mark);
   std::size_t size() const { return bytes_.size(); }
 
-  const std::string& bytes() const { return bytes_; }
+  /// What has been written since the last call.
+  std::string take() { return std::exchange(bytes_, {}); }
 
  private:
   using Names = std::map<std::string, std::uint64_t, std::less<>>;

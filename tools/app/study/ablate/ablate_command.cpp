@@ -80,7 +80,7 @@ RunColumns point_columns(const Ablation& ablation) {
   return columns;
 }
 
-Answer answer(const AblateOptions& options, const RunnerOptions& runner, const CommandLine&) {
+Answer answer(const AblateOptions& options, const RunnerOptions& runner, const Arguments&) {
   const Ablation ablation = make_ablation(options, runner.progress);
   const std::vector<Point> runs = ablation_runs(ablation);
   const std::vector<RunOutcome> outcomes = run_outcomes(runs, ablation.plan.measure, runner);
@@ -116,7 +116,7 @@ const Study kAblate{
 
 }  // namespace
 
-Command add_ablate_command(CLI::App& app, const CommandLine& words) {
+Command add_ablate_command(CLI::App& app, const Arguments& words) {
   return add_study<AblateOptions>(
       app, words, kAblate, declare,
       [](const AblateOptions& options) { return batch_inputs(kAblate.name, options); }, answer);

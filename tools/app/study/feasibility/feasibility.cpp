@@ -33,9 +33,10 @@ class LeisurelySource : public TraceSource {
       : TraceSource(work, kUnlimited, kUnlimited, sim::has_accelerators(chip)) {}
 
   std::int64_t arrival_ns(int frame) const override { return frame * kLeisurelyNs; }
-  void describe(RunResult& result) const override {
-    TraceSource::describe(result);
-    result.frame_period_ns = kLeisurelyNs;
+  RunSubject subject() const override {
+    RunSubject subject = TraceSource::subject();
+    subject.frame_period_ns = kLeisurelyNs;
+    return subject;
   }
 };
 

@@ -88,7 +88,7 @@ std::vector<fs::path> inputs_of(const FlightOptions& options) {
   return inputs;
 }
 
-Answer answer(const FlightOptions& options, const RunnerOptions& runner, const CommandLine&) {
+Answer answer(const FlightOptions& options, const RunnerOptions& runner, const Arguments&) {
   const Benchmark benchmark = make_benchmark(plan_of(options), options.motions);
   if (options.list) return {.parts = {list_text(benchmark)}, .is_list = true};
   const Measure how;
@@ -153,7 +153,7 @@ const Study kBenchmark{"benchmark-flights",
 
 }  // namespace
 
-Command add_benchmark_flights_command(CLI::App& app, const CommandLine& words) {
+Command add_benchmark_flights_command(CLI::App& app, const Arguments& words) {
   return add_study<FlightOptions>(app, words, kBenchmark, declare, inputs_of, answer);
 }
 

@@ -141,7 +141,7 @@ void declare(CLI::App& command, StudyOptions& options) {
   add_chip_run_options(command, options);
 }
 
-Answer answer(const StudyOptions& options, const RunnerOptions& runner, const CommandLine&) {
+Answer answer(const StudyOptions& options, const RunnerOptions& runner, const Arguments&) {
   RunRequest request = make_chip_request(options);
   request.data = data_folder(options, runner.progress);
   WorkRecording recording(request.cores);
@@ -321,7 +321,7 @@ Table sensitivity_rows(const Sensitivity& sensitivity) {
   return table_of(columns, sensitivity.swings);
 }
 
-Command add_sensitivity_command(CLI::App& app, const CommandLine& words) {
+Command add_sensitivity_command(CLI::App& app, const Arguments& words) {
   return add_study<StudyOptions>(
       app, words, kStudy, declare,
       [](const StudyOptions& options) { return data_inputs(options.data); }, answer);

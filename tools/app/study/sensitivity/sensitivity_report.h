@@ -17,6 +17,6 @@ std::vector<std::string> sensitivity_tables(const Sensitivity& sensitivity, int 
 Table sensitivity_rows(const Sensitivity& sensitivity);
 
 /// `leviosim sensitivity` (tools/commands/commands.h).
-Command add_sensitivity_command(CLI::App& app, const CommandLine& words);
+Command add_sensitivity_command(CLI::App& app, const Arguments& words);
 
 }  // namespace leviosim::tools

@@ -396,7 +396,7 @@ void run(const CLI::App& command, const SweepArguments& words) {
 
 }  // namespace
 
-Command add_sweep_command(CLI::App& app, const CommandLine&) {
+Command add_sweep_command(CLI::App& app, const Arguments&) {
   CLI::App* command = app.add_subcommand(
       "sweep", "Many chips, parameters, profiles, flights or seeds: all points of a plan");
   const auto words = std::make_shared<SweepArguments>();

@@ -71,7 +71,7 @@ ChosenRun run_again(const TunePlan& plan, const TunePoint& point) {
 }
 
 Manifest manifest_of(const TunePlan& plan, const TunePoint& point, const ChosenRun& run,
-                     const CommandLine& command_line) {
+                     const Arguments& command_line) {
   return make_manifest(run_options_of(plan, point), run.request, command_line);
 }
 
@@ -89,7 +89,7 @@ std::string head_of(const TunePlan& plan, std::size_t loops) {
 }
 
 Answer answer(const TuneOptions& options, const RunnerOptions& runner,
-              const CommandLine& command_line) {
+              const Arguments& command_line) {
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const TunePlan plan = make_tune_plan(options, runner.progress);
   const std::vector<Point> runs = tune_runs(plan);
@@ -119,8 +119,8 @@ Answer answer(const TuneOptions& options, const RunnerOptions& runner,
                     record = make_record("the chosen point", manifest, again.result)] {
       return gate.check(record);
     };
-  const RunFolder folder =
-      run_folder("chosen", again.result, manifest, platform::to_yaml(again.request.platform));
+  const RunFolder folder = run_folder("chosen", std::make_shared<const RunResult>(again.result),
+                                      manifest, platform::to_yaml(again.request.platform));
   answer.write_more = [folder](outputs::OutputFolder& out) {
     write_run_folder(out, folder, "chosen/");
   };
@@ -136,7 +136,7 @@ const Study kTune{
 
 }  // namespace
 
-Command add_tune_command(CLI::App& app, const CommandLine& words) {
+Command add_tune_command(CLI::App& app, const Arguments& words) {
   return add_study<TuneOptions>(app, words, kTune, declare, inputs_of, answer);
 }
 

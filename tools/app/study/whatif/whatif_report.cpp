@@ -113,7 +113,7 @@ SweepRow settings_of(const traces::WorkTrace& trace, const std::vector<std::stri
 }
 
 /// levio over the shipped flight on GAP9, as the demonstration runs it.
-std::string recorded_flight(const CommandLine& words, ProgressLine::Style style) {
+std::string recorded_flight(const Arguments& words, ProgressLine::Style style) {
   RunOptions options;
   options.platform = "gap9";
   options.data = "synthetic";
@@ -132,7 +132,7 @@ struct StudiedRun {
   SweepRow again;
 };
 
-StudiedRun studied_run(const std::string& run, SweepInputs& inputs, const CommandLine& words,
+StudiedRun studied_run(const std::string& run, SweepInputs& inputs, const Arguments& words,
                        ProgressLine::Style style) {
   if (run.empty()) {
     StudiedRun studied{"the shipped flight", {}};
@@ -185,7 +185,7 @@ std::string WhatIfOptions::run() const {
   return names_run ? words.front() : std::string();
 }
 
-Answer answer(const WhatIfOptions& typed, const RunnerOptions& runner, const CommandLine& words) {
+Answer answer(const WhatIfOptions& typed, const RunnerOptions& runner, const Arguments& words) {
   const std::string name = typed.run();
   const std::vector<std::string> changes = typed.changes();
   SweepInputs inputs(std::filesystem::current_path(), runner.progress, trace_memory(typed.memory));
@@ -256,7 +256,7 @@ Table whatif_rows(const std::vector<VariantResult>& results) {
   return table_of(variant_columns(results), results);
 }
 
-Command add_whatif_command(CLI::App& app, const CommandLine& words) {
+Command add_whatif_command(CLI::App& app, const Arguments& words) {
   return add_study<WhatIfOptions>(
       app, words, kWhatIf, declare,
       [](const WhatIfOptions& options) {

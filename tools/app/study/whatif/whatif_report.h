@@ -16,6 +16,6 @@ std::string whatif_bars(const std::vector<VariantResult>& results);
 Table whatif_rows(const std::vector<VariantResult>& results);
 
 /// `leviosim whatif` (tools/commands/commands.h).
-Command add_whatif_command(CLI::App& app, const CommandLine& words);
+Command add_whatif_command(CLI::App& app, const Arguments& words);
 
 }  // namespace leviosim::tools
