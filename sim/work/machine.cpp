@@ -9,12 +9,13 @@ Machine::Machine(const MachineConfig& config)
       local_(config.memory, config.capacity, config.alignment),
       external_("external memory", config.external) {
   check(config.cores >= 1, "a machine has at least one core");
-  if (config.record && config.code != nullptr) tracker_.emplace(*config.code, config.cores + 1);
+  if (config.record && config.code != nullptr)
+    tracker_.emplace(*config.code, code_of(config.cores) + 1);
 }
 
 void Machine::follow_code_of(int core) {
   if (!tracker_) return;
-  tracker_->select(core);
+  tracker_->select(code_of(core));
   current_code = &*tracker_;
 }
 

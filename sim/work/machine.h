@@ -210,6 +210,10 @@ class Machine {
   static Segment counted_so_far();
   /// From now on the host executes the code of this core; the master's id is cores().
   void follow_code_of(int core);
+  /// Whose history of code this core's work belongs to. A program of one core has no forks: what it
+  /// does between two shares is fetched anew after each, as the share's own code has taken its
+  /// place.
+  int code_of(int core) const { return config_.cores == 1 ? 0 : core; }
 
   MachineConfig config_;
   Arena local_;
@@ -224,7 +228,7 @@ class Machine {
   MemoryPeak fork_peak_;  ///< of the forks of the stage so far
   std::string_view stage_;
   std::vector<Passage> passages_;
-  std::optional<CodeTracker> tracker_;  ///< of every core and of the master, if their code is known
+  std::optional<CodeTracker> tracker_;  ///< of the cores (code_of), if their code is known
 };
 
 }  // namespace leviosim::work

@@ -24,6 +24,31 @@ MemoryPeak peak_of_forks(const std::vector<std::array<int, 2>>& forks, int own =
   return machine.take_job().stages.at(0).memory;
 }
 
+/// Code that the second of two visits of `before` fetches, which a fork lies between.
+CodeReuse fetched_behind_a_fork(int cores) {
+  CodeMap map;
+  map.add("before", "", 64);
+  map.add("share", "", 1024);
+  Machine machine({.cores = cores, .capacity = Bytes(4096), .record = true, .code = &map});
+  {
+    const auto stage = machine.stage("s");
+    const auto visit = [] { const P::Function function("before"); };
+    visit();
+    machine.fork("f", [](Core&) { const P::Function function("share"); });
+    visit();
+  }
+  return std::get<Serial>(machine.take_job().stages.at(0).steps.at(2)).counts.code;
+}
+
+// A program of one core has one cache for both.
+TEST(Machine, OnOneCoreTheCodeOfAShareDisplacesWhatTheMasterExecutedBefore) {
+  CodeReuse alone{}, of_team{};
+  for_reuse_classes(64 + 1024, 64, [&](std::size_t k, std::uint32_t n) { alone[k] += n; });
+  for_reuse_classes(64, 64, [&](std::size_t k, std::uint32_t n) { of_team[k] += n; });
+  EXPECT_EQ(fetched_behind_a_fork(1), alone);
+  EXPECT_EQ(fetched_behind_a_fork(2), of_team);
+}
+
 TEST(Machine, ScratchOfAllCoresCountsInParallelAndTheLargestAlone) {
   const MemoryPeak peak = peak_of_forks({{100, 60}}, 40);
   EXPECT_EQ(peak.parallel, Bytes(40 + 100 + 60));

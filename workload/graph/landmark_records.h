@@ -16,6 +16,7 @@
 #include <algorithm>
 
 #include "sim/work/tiles.h"
+#include "workload/math/vec.h"
 
 namespace leviosim::vio {
 

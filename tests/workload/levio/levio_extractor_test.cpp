@@ -6,6 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
+#include "platform_models/loader/compiled_code.h"
+#include "platform_models/loader/loader.h"
+#include "sim/chip/cost.h"
 #include "sim/work/machine.h"
 #include "tests/workload/vision/runs.h"
 #include "workload/levio/vision/corner_tests.h"
@@ -129,6 +135,29 @@ TEST(LevioExtractor, TheBlurIsThatOfTheSharedExtraction) {
   vio::blur_rows<N>(image, {{a.data(), 160 * 120}, 160, 120}, 0, 120, {kernel.data(), kBlurTaps});
   levio::blur_rows<N>(image, {{b.data(), 160 * 120}, 160, 120}, 0, 120);
   EXPECT_EQ(a, b);
+}
+
+/// Compiled code takes about as long for a pixel at the edge as for one inside, though more is
+/// counted. So the first and the last core are not later than others.
+TEST(LevioExtractor, CoresWithMoreEdgePixelsBlurAsFastAsOthers) {
+  PolicyImage<C> from(picture());
+  PolicyImage<C> to(160, 120);
+  work::Machine machine({.record = true, .code = &platform::compiled_code()});
+  {
+    const auto stage = machine.stage("s");
+    machine.fork("blur", [&](work::Core& core) {
+      const auto [begin, end] = core.share(120);
+      levio::blur_rows<C>(from.view(), to.view(), begin, end);
+    });
+  }
+  const sim::CoreCosts core(platform::load_platform("gap9").cluster.core);
+  const work::Job job = machine.take_job();
+  std::vector<double> slots;
+  for (const work::Segment& share : std::get<work::Fork>(job.stages.at(0).steps.at(0)).shares)
+    slots.push_back(sim::demand_of(share, core).alone[sim::Mechanism::Issue]);
+  ASSERT_EQ(slots.size(), 8u);
+  const auto [least, most] = std::minmax_element(slots.begin(), slots.end());
+  EXPECT_LT(*most, 1.05 * *least);
 }
 
 /// By the words of PARAMETERS.md#defects-of-the-release.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace leviosim::tools {
 
@@ -17,6 +19,17 @@ struct Banded {
     return {factor * b.value, factor * b.low, factor * b.high};
   }
 };
+
+/// How much bands say: half of their widths, in per cent of the figure, the median. 0: there is
+/// none.
+inline double median_half_width(const std::vector<Banded>& bands) {
+  if (bands.empty()) return 0;
+  std::vector<double> widths;
+  for (const Banded& b : bands) widths.push_back(50 * (b.high - b.low) / b.value);
+  std::sort(widths.begin(), widths.end());
+  const std::size_t half = widths.size() / 2;
+  return widths.size() % 2 == 1 ? widths[half] : (widths[half - 1] + widths[half]) / 2;
+}
 
 /// The band of a figure that depends on numbers with independent errors: the root of the sum of the
 /// squares of each one's effect, below and above.

@@ -71,16 +71,10 @@ std::string errors_text(const std::vector<Comparison>& comparisons, int cores) {
       error("error.multi.worst"));
 }
 
-/// In per cent of what was simulated.
-double median_half_width(const std::vector<BandedStage>& bands) {
-  std::vector<double> widths;
-  for (const BandedStage& band : bands) {
-    const Banded& b = band.weighed.value_or(band.simulated);
-    widths.push_back(50 * (b.high - b.low) / b.value);
-  }
-  std::sort(widths.begin(), widths.end());
-  const std::size_t half = widths.size() / 2;
-  return widths.size() % 2 == 1 ? widths[half] : (widths[half - 1] + widths[half]) / 2;
+std::vector<Banded> shown_bands(const std::vector<BandedStage>& stages) {
+  std::vector<Banded> bands;
+  for (const BandedStage& stage : stages) bands.push_back(stage.weighed.value_or(stage.simulated));
+  return bands;
 }
 
 constexpr const char* kHowToRead =
@@ -234,7 +228,7 @@ std::string band_table(const std::vector<BandedStage>& bands, int cores) {
       "{}{} of {} of the paper's figures lie inside; of this run's own means {}; median half width "
       "{:.1f} %\n\n",
       terminal_text(table_of(table, bands)), count([](B b) { return b.is_inside(); }), bands.size(),
-      count([](B b) { return b.simulated.holds(b.paper); }), median_half_width(bands));
+      count([](B b) { return b.simulated.holds(b.paper); }), median_half_width(shown_bands(bands)));
 }
 
 std::vector<std::string> validation_report(const Validation& validation, int cores) {

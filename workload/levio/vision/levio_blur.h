@@ -45,10 +45,12 @@ typename P::I32 blur_pixel_inside(typename P::template Span<const typename P::By
 template <class P>
 void blur_rows(ConstImageView<P> image, ImageView<P> blurred, int begin, int end) {
   using Byte = typename P::Byte;
-  const typename P::Code code("levio_blur_rows");
   const int width = image.width;
   const auto inside = [](int at, int size) { return at >= kBlurRadius && at < size - kBlurRadius; };
-  for (int y : P::range(begin, end))
+  for (int y : P::range(begin, end)) {
+    // A visit is a row, so that cores with fewer rows, or with other ones, visit as much less of
+    // it.
+    const typename P::Code code("levio_blur_row");
     for (int x : P::range(0, width)) {
       const int corner = (y - image.top - kBlurRadius) * width + x - kBlurRadius;
       const bool whole = inside(y, image.height) && inside(x, width);
@@ -56,6 +58,7 @@ void blur_rows(ConstImageView<P> image, ImageView<P> blurred, int begin, int end
           work::narrow<Byte>(whole ? blur_pixel_inside<P>(image.pixels, width, corner)
                                    : blur_pixel_at_edge<P>(image, x, y));
     }
+  }
 }
 
 }  // namespace leviosim::vio::levio

@@ -213,10 +213,10 @@ std::string microbench_table(std::string_view chip, const std::vector<Microbench
 
 std::string coverage_text(const std::vector<MicrobenchRow>& rows,
                           const std::vector<double>& needed) {
-  int all = 0;
+  std::vector<Banded> bands;
   int inside = 0;
   for (const MicrobenchRow& row : rows) {
-    all += row.band ? 1 : 0;
+    if (row.band) bands.push_back(*row.band);
     inside += row.is_inside() ? 1 : 0;
   }
   const auto at = [&](double share) {
@@ -225,8 +225,8 @@ std::string coverage_text(const std::vector<MicrobenchRow>& rows,
   };
   std::string text = fmt::format(
       "published cycles of kernels: {} of {} lie inside the band that the platform's ranges "
-      "leave\n",
-      inside, all);
+      "leave;\nits median half width is {:.1f} %\n",
+      inside, bands.size(), median_half_width(bands));
   if (needed.empty()) return text;
   return text +
          fmt::format(

@@ -11,14 +11,9 @@
 
 #include "sim/base/units.h"
 #include "sim/work/memory.h"
+#include "sim/work/program.h"
 
 namespace leviosim::work {
-
-struct Block {
-  std::string_view name;
-  Bytes offset;
-  Bytes size;
-};
 
 class Arena {
  public:
@@ -56,6 +51,7 @@ class Arena {
   std::vector<Block> live() const { return {}; }
   void reset_peak() {}
   void set_user(std::string_view) {}
+  int overflow(std::string_view, Bytes) const { __builtin_trap(); }
 
   /// Part `k` of `n` of the free memory.
   Arena lend(std::string_view, int n, int k) {
