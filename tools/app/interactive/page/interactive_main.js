@@ -79,6 +79,7 @@ class InteractivePage {
     this.timeFrame();
     this.latency = latencyFigure(this.state, (number) => this.select(number));
     this.stages = stageBars(this.bars, this.data.mechanisms);
+    this.gantt = frameGantt(this.bars, this.setting);
     document.getElementById('content').replaceChildren(
         element(
             'section', {id: 'verdict', 'aria-label': 'Verdict'},
@@ -98,7 +99,7 @@ class InteractivePage {
                             button('As recorded', () => this.back()),
                             button('Copy as command', (event) => this.copy(event.target))),
                     command),
-                this.latency, this.stages)));
+                this.latency, this.gantt, this.stages)));
     drawAll();
   }
 
@@ -157,6 +158,7 @@ class InteractivePage {
         sentence(this.setting, this.bars.now, this.bars.recorded, this.data.mechanisms) :
         '';
     this.stages.redraw();
+    this.gantt.redraw();
     this.rest = setTimeout(() => this.rested(runs), kRest);
     this.latency.redraw();
     this.knobs.show();
