@@ -200,6 +200,38 @@ class InteractivePage(unittest.TestCase):
         self.assertIn("With cluster.fpu.units=2, fps=40, units of gap9-hamming, frame", said)
         self.assertEqual(page.complaints, [])
 
+    def test_the_smallest_chip_found_is_in_time_and_no_single_change_that_is_makes_a_smaller_one(self):
+        page = self.opened("next")
+        page.run("findSmallest(window.page)")
+        found = page.run("({late: window.page.now.late, area: window.page.area})")
+        self.assertEqual(found["late"], 0)
+        self.assertIn("never late", page.run("window.page.parts.status.textContent"))
+        areas = page.run("""(() => { const {engine: e, data} = window.page, areas = [];
+            const period = data.period_ns;
+            const lines = data.knobs.filter((knob) => knob.path !== 'fps').flatMap(
+                (knob) => knob.values.map((value) => `${knob.path}=${value}`));
+            for (const line of lines) {
+              try {
+                const area = e.set([line]).area_mm2;
+                if (e.flight().statistics['frame.time.worst'] <= period) areas.push(area);
+              } catch {}
+            }
+            return areas; })()""")
+        self.assertGreater(len(areas), 10)
+        self.assertLessEqual(found["area"], min(areas))
+        self.assertEqual(page.complaints, [])
+
+    def test_a_search_ends_when_somebody_moves_a_slider(self):
+        page = self.opened("next")
+        said = page.run("""(async () => { const search = findSmallest(window.page);
+            const slider = document.getElementById('knob-4');
+            slider.value = 0;
+            slider.dispatchEvent(new Event('input'));
+            await search;
+            return window.page.parts.status.textContent; })()""")
+        self.assertNotIn("smallest", said)
+        self.assertEqual(len(page.run("window.page.setting.lines()")), 1)
+
     def test_it_is_drawn_without_errors_requests_or_overflow(self):
         for width in (1280, 390):
             for dark in (False, True):

@@ -49,7 +49,7 @@ Json json_of(const base::YamlNode& node) {
 std::string interactive_scripts() {
   std::string text;
   for (const char* name : {"replay_engine", "flight", "setting", "knobs", "answer", "latency",
-                           "stage_bars", "frame_gantt", "interactive_main"})
+                           "stage_bars", "frame_gantt", "search", "interactive_main"})
     text += interactive_part(name);
   return text;
 }
