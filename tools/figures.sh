@@ -21,12 +21,13 @@ figure() { # figure NAME: the following lines are about it
   names+=("$name")
   needs[$name]=
 }
-needs() { needs[$name]="$*"; }  # data, slow, aha
+needs() { needs[$name]="$*"; }  # data, slow, aha, engine
 after() { after[$name]=$1; }    # a command that makes what the figure's command reads; not shown
 shows() { command[$name]=$1; }  # the command; it runs in an empty folder beside euroc/
 cut() { cut[$name]=$1; }        # the part of its output that is shown: functions of cut.sh
 keeps() { result[$name]=$1; }   # a picture that the command makes, kept as tools/figures/NAME.svg
-# photo WIDTHxHEIGHT PAGE: how a browser shows a page that the command makes, kept as NAME.png
+# photo WIDTHxHEIGHT PAGE: how a browser shows a page that the command makes, kept as NAME.png; of a page
+# that computes PAGE#SETTING
 photo() { photo[$name]=$1 result[$name]=$2; }
 source tools/figures/list.sh
 
@@ -109,6 +110,11 @@ output_of() { # output_of NAME COMMAND
 }
 
 take_photo() { # take_photo SIZE PAGE PICTURE
+  if [[ $2 == *#* ]]; then
+    python3 tools/figures/page_still.py "$2" "$1" "$3" >/dev/null 2>"$work/still.errors" ||
+      fail "$2: $(tail -1 "$work/still.errors")"
+    return
+  fi
   chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --virtual-time-budget=5000 \
     --window-size="${1/x/,}" --screenshot="$3" "file://$2" >/dev/null 2>&1 ||
     fail "chromium shows no $2; tools/setup.sh tests installs it"
@@ -172,6 +178,10 @@ for name in "${names[@]}"; do
   fi
   if [[ " ${needs[$name]} " == *" aha "* ]] && ! command -v aha >/dev/null; then
     echo "figures: $name left out: it needs aha (apt-get install aha)"
+    continue
+  fi
+  if [[ " ${needs[$name]} " == *" engine "* ]] && "$leviosim" report none --interactive -o none 2>&1 | grep -q "without the engine"; then
+    echo "figures: $name left out: it needs a program with the engine of pages (LEVIOSIM_WASM=ON tools/build.sh release)"
     continue
   fi
   if [[ -n ${photo[$name]:-} ]]; then

@@ -200,6 +200,63 @@ class InteractivePage(unittest.TestCase):
         self.assertIn("With cluster.fpu.units=2, fps=40, units of gap9-hamming, frame", said)
         self.assertEqual(page.complaints, [])
 
+    def test_the_smallest_chip_found_is_in_time_and_no_single_change_that_is_makes_a_smaller_one(self):
+        page = self.opened("next")
+        page.run("findSmallest(window.page)")
+        found = page.run("({late: window.page.now.late, area: window.page.area})")
+        self.assertEqual(found["late"], 0)
+        self.assertIn("never late", page.run("window.page.parts.status.textContent"))
+        areas = page.run("""(() => { const {engine: e, data} = window.page, areas = [];
+            const period = data.period_ns;
+            const lines = data.knobs.filter((knob) => knob.path !== 'fps').flatMap(
+                (knob) => knob.values.map((value) => `${knob.path}=${value}`));
+            for (const line of lines) {
+              try {
+                const area = e.set([line]).area_mm2;
+                if (e.flight().statistics['frame.time.worst'] <= period) areas.push(area);
+              } catch {}
+            }
+            return areas; })()""")
+        self.assertGreater(len(areas), 10)
+        self.assertLessEqual(found["area"], min(areas))
+        self.assertEqual(page.complaints, [])
+
+    def test_a_search_ends_when_somebody_moves_a_slider(self):
+        page = self.opened("next")
+        said = page.run("""(async () => { const search = findSmallest(window.page);
+            const slider = document.getElementById('knob-4');
+            slider.value = 0;
+            slider.dispatchEvent(new Event('input'));
+            await search;
+            return window.page.parts.status.textContent; })()""")
+        self.assertNotIn("smallest", said)
+        self.assertEqual(len(page.run("window.page.setting.lines()")), 1)
+
+    def test_a_click_on_the_latencies_shows_that_frame_in_time_on_both_chips(self):
+        page = self.opened("levio", "cluster.fpu.units=1&frame=2")
+        page.run("""(() => { delete document.body.dataset.ready;
+            const canvas = document.querySelector('canvas'), at = canvas.getBoundingClientRect();
+            const {x, y} = Chart.getChart(canvas).getDatasetMeta(0).data[9];
+            canvas.dispatchEvent(new MouseEvent('click', {bubbles: true, clientX: at.left + x,
+                                                          clientY: at.top + y})); })()""")
+        page.wait("document.body.dataset.ready")
+        self.assertIn("frame=9", page.run("location.hash"))
+        outcomes = page.run("[window.page.bars.recorded, window.page.bars.now]")
+        ends = []
+        for outcome in outcomes:
+            spans = [span for span in outcome["spans"] if not span["controller"]]
+            self.assertEqual([span["stage"] for span in spans],
+                             [span["stage"] for span in outcomes[0]["spans"] if not span["controller"]])
+            for before, after in zip(spans, spans[1:]):
+                self.assertLessEqual(before["end_ns"], after["begin_ns"])
+            ends.append(spans[-1]["end_ns"])
+            self.assertLessEqual(ends[-1], outcome["statistics"]["frame.time.mean"])
+            self.assertGreater(ends[-1], 0.9 * outcome["statistics"]["frame.time.mean"])
+        self.assertGreater(ends[1], ends[0])  # one FPU takes longer
+        drawn = page.run("Chart.getChart(document.querySelectorAll('canvas')[1]).data.labels")
+        self.assertIn("cluster, recorded", drawn)
+        self.assertIn("cluster, now", drawn)
+
     def test_it_is_drawn_without_errors_requests_or_overflow(self):
         for width in (1280, 390):
             for dark in (False, True):
@@ -207,7 +264,7 @@ class InteractivePage(unittest.TestCase):
                     page = self.opened("levio", "cluster.fpu.units=1", width=width, dark=dark)
                     self.assertEqual(page.complaints, [])
                     self.assertLessEqual(page.run("document.documentElement.scrollWidth"), width)
-                    self.assertEqual(page.run("document.querySelectorAll('canvas').length"), 2)
+                    self.assertEqual(page.run("document.querySelectorAll('canvas').length"), 3)
                     self.assertEqual(page.run("document.querySelectorAll('.verdict').length"), 1)
                     ink = page.run("getComputedStyle(document.documentElement).getPropertyValue('--ink').trim()")
                     self.assertEqual(ink, "#e4e9ef" if dark else "#1b2430")

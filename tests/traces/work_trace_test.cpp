@@ -107,7 +107,7 @@ TEST(WorkTrace, AReaderSkipsToAFrame) {
 /// As interactive pages hold it: all that is compressed is plain, under checksums that are right.
 TEST(WorkTrace, IsWrittenWithoutCompression) {
   const std::string packed = example_trace(40);
-  const std::string plain = plain_file(kWorkTraceFile, "t", packed, MemoryBudget(kTraceMemory));
+  const std::string plain = plain_file(WorkTrace("t", packed), packed, {});
   std::vector<std::string> contents;
   for (const Section& section : sections_of(kWorkTraceFile, "t", plain)) {
     EXPECT_EQ(section.stored.size(), section.content_size);
@@ -196,25 +196,39 @@ TEST(WorkTrace, KeepsWhichForksAreAlignedOnOneCore) {
   testing::expect_equal(read, written);
 }
 
+/// What readers for one instruction set get, but for the compiled work of others.
+void expect_same(const WorkTrace& expected, const WorkTrace& trace, work::CompiledFor code) {
+  WorkFrames all(expected, true);
+  WorkFrames one(trace, true, code);
+  WorkFrame a, b;
+  const auto keep_only = [code](work::Segment& segment) {
+    const auto own = work::compiled_of(segment.compiled, code);
+    segment.compiled = {};
+    work::set_compiled(segment.compiled, code, own);
+  };
+  while (all.next(a)) {
+    ASSERT_TRUE(one.next(b));
+    for_each_segment(a, keep_only);
+    for_each_segment(b, keep_only);
+    testing::expect_equal(a, b);
+  }
+  EXPECT_FALSE(one.next(b));
+}
+
 TEST(WorkTrace, GivesTheCompiledWorkOfOneInstructionSetAlone) {
-  const WorkTrace trace("example", testing::example_trace_with_offload(40));
+  const std::string packed = testing::example_trace_with_offload(40);
+  const WorkTrace trace("example", packed);
+  const std::string plain = plain_file(trace, packed, {});
   for (const auto code :
        {work::CompiledFor::Rv32imfc, work::CompiledFor::Armv6, work::CompiledFor::Rv32imfcXpulp}) {
-    WorkFrames all(trace, true);
-    WorkFrames one(trace, true, code);
-    WorkFrame a, b;
-    const auto keep_only = [code](work::Segment& segment) {
-      const auto own = work::compiled_of(segment.compiled, code);
-      segment.compiled = {};
-      work::set_compiled(segment.compiled, code, own);
-    };
-    while (all.next(a)) {
-      ASSERT_TRUE(one.next(b));
-      for_each_segment(a, keep_only);
-      for_each_segment(b, keep_only);
-      testing::expect_equal(a, b);
-    }
-    EXPECT_FALSE(one.next(b));
+    expect_same(trace, trace, code);
+    // And so do pages, which keep no other.
+    const std::string part = plain_file(trace, packed, code);
+    EXPECT_LT(part.size(), plain.size());
+    std::vector<std::string> contents;
+    for (const Section& section : sections_of(kWorkTraceFile, "t", part))
+      contents.emplace_back(section.stored);
+    expect_same(trace, WorkTrace("part", trace_of(contents)), code);
   }
 }
 

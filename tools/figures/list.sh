@@ -285,6 +285,18 @@ leviosim sweep l1.yaml --out l1 && l1_knee.py l1/sweep.csv >knee.svg'
 keeps knee.svg
 
 # README.md
+figure slider-before
+needs data engine
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim report recorded --interactive -o chip.html'
+photo 1440x900 chip.html#cluster.icache.shared_size=2KiB
+
+figure slider-after
+needs data engine
+after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
+shows 'leviosim report recorded --interactive -o chip.html'
+photo 1440x900 chip.html#cluster.icache.shared_size=8KiB
+
 figure timeline
 needs data
 shows 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --frames 0:60 --out start --timeline frame.svg --timeline-frames 40:41'

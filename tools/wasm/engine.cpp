@@ -17,6 +17,7 @@
 #include "sim/base/error.h"
 #include "sim/base/text.h"
 #include "sim/chip/accelerator.h"
+#include "sim/chip/chip.h"
 #include "sim/energy/area.h"
 #include "tools/app/record/cycle_parts.h"
 #include "tools/app/record/statistics.h"
@@ -59,6 +60,29 @@ class PageObserver : public RunObserver {
   void on_front_end(const FrontEndJob& job) override {
     page_frame(job.frame, static_cast<double>(job.result.end_ns - job.result.arrival_ns));
   }
+};
+
+/// When the stages of a frame run on a chip that does nothing else.
+class FrameSpans : public RunObserver {
+ public:
+  explicit FrameSpans(const sim::ChipConfig& chip) : timebase_(sim::timebase_of(chip)) {}
+  void on_front_end(const FrontEndJob& job) override { add(job.parallel, false); }
+  void on_optimiser(const OptimiserJob& job) override { add(job.timing, true); }
+  /// [{"stage", "controller", "begin_ns", "end_ns"}, …]
+  Json take() { return std::move(spans_); }
+
+ private:
+  void add(const sim::JobTiming& job, bool on_controller) {
+    const auto ns = [&](sim::Time t) { return timebase_.whole_nanoseconds(t - sim::Time{}); };
+    for (const sim::StageTiming& stage : job.stages)
+      spans_.push_back({{"stage", stage.stage},
+                        {"controller", on_controller},
+                        {"begin_ns", ns(stage.begin)},
+                        {"end_ns", ns(stage.end)}});
+  }
+
+  sim::Timebase timebase_;
+  Json spans_ = Json::array();
 };
 
 /// The figures that the page shows while a slider moves.
@@ -152,7 +176,12 @@ class Engine {
     return outcome_json(run, everything);
   }
 
-  Json frame(int number) { return outcome_json(timed_frame(number, chip_, settings_), false); }
+  Json frame(int number) {
+    FrameSpans spans(chip_.config);
+    Json outcome = outcome_json(timed_frame(number, chip_, settings_, &spans), false);
+    outcome["spans"] = spans.take();
+    return outcome;
+  }
 
   /// What the setting adds to another one: in area, and in energy of a frame.
   Json price(int number, std::string_view other_lines) {
@@ -193,10 +222,12 @@ class Engine {
   }
 
   RunResult timed_frame(int number, const platform::ResolvedPlatform& chip,
-                        const Settings& settings) {
+                        const Settings& settings, RunObserver* observer = nullptr) {
     decode(number, chip.config);
     FrameSource source(trace_, frame_, number, chip.config, settings.period_ns);
-    return simulate_source(request_of(chip), source, [](const Progress&) {});
+    RunRequest request = request_of(chip);
+    request.observer = observer;
+    return simulate_source(request, source, [](const Progress&) {});
   }
 
   /// The frame stays, so that a slider that moves does not read it again.

@@ -1,18 +1,21 @@
-// A file of sections (section_file.h) whose contents are not compressed, for who compresses it as a
-// whole: interactive pages hold work traces so. Only their engine reads it
-// (tools/wasm/plain_sections.cpp).
+// A work trace whose sections are not compressed, for who compresses it as a whole: interactive
+// pages hold it so. Only their engine reads it (tools/wasm/plain_sections.cpp). The work that
+// compilers made for other instruction sets than that of the page's chip is left out: it is a
+// sixth.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
-#include "traces/work_traces/section_file.h"
+#include "traces/work_traces/work_trace.h"
 
 namespace leviosim::traces {
 
-/// @param file  its name, for messages
-/// @throws InputError as sections_of() and unpacked()
-std::string plain_file(const FileKind& kind, const std::string& file, std::string_view bytes,
-                       MemoryBudget budget);
+/// @param bytes  of the trace
+/// @param code  whose compiled work is kept; of all if absent
+/// @throws InputError as sections_of(), unpacked() and the readers of frames
+std::string plain_file(const WorkTrace& trace, std::string_view bytes,
+                       std::optional<work::CompiledFor> code);
 
 }  // namespace leviosim::traces

@@ -136,9 +136,8 @@ std::vector<std::size_t> changing(std::span<const work::Counts> series) {
   }
   std::stable_sort(found.begin(), found.end(),
                    [&](std::size_t a, std::size_t b) { return range[a] < range[b]; });
-  std::stable_partition(found.begin(), found.end(), [](std::size_t k) {
-    return !is_of_another_set(k, kMostReadSet);
-  });
+  std::stable_partition(found.begin(), found.end(),
+                        [](std::size_t k) { return !is_of_another_set(k, kMostReadSet); });
   return found;
 }
 
@@ -259,6 +258,36 @@ void SeriesReader::next(work::Counts& counts) {
   }
   first_ = false;
   counts = present_;
+}
+
+void SeriesReader::write(const FileFields& fields, ByteWriter& head, ByteWriter& columns) {
+  const auto number = [&](std::size_t k) {
+    const auto field = std::find(fields.begin(), fields.end(), k);
+    head.whole(static_cast<std::uint64_t>(field - fields.begin()));
+  };
+  head.whole(static_cast<std::uint64_t>(std::count_if(
+      fields.begin(), fields.end(), [&](auto k) { return counter(present_, k) > 0; })));
+  for (const std::size_t k : fields) {
+    if (counter(present_, k) == 0) continue;
+    number(k);
+    head.whole(counter(present_, k));
+  }
+  head.whole(columns_.size());
+  for (Column& column : columns_) {
+    number(column.counter);
+    const std::size_t size = column.differences.left();
+    head.whole(size);
+    columns.append(column.differences.take(size, "a column"));
+  }
+  head.whole(sums_.size());
+  for (const Sum& sum : sums_) {
+    number(sum.counter);
+    head.whole(sum.end_term - sum.first_term);
+    for (std::size_t t = sum.first_term; t < sum.end_term; ++t) {
+      number(terms_[t].counter);
+      head.integer(static_cast<std::int64_t>(terms_[t].factor));
+    }
+  }
 }
 
 void SeriesReader::expect_end() {

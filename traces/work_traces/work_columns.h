@@ -46,6 +46,8 @@ class SeriesReader {
                std::optional<work::CompiledFor> code = {});
 
   void next(work::Counts& counts);
+  /// What next() would go through, as a series of that file again. Nothing is left to read then.
+  void write(const FileFields& fields, ByteWriter& head, ByteWriter& columns);
   /// Of what next() goes through. [bytes]
   std::size_t size() const {
     return columns_.size() * sizeof(Column) + terms_.size() * sizeof(Term) +

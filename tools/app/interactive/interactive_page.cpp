@@ -49,7 +49,7 @@ Json json_of(const base::YamlNode& node) {
 std::string interactive_scripts() {
   std::string text;
   for (const char* name : {"replay_engine", "flight", "setting", "knobs", "answer", "latency",
-                           "stage_bars", "interactive_main"})
+                           "stage_bars", "frame_gantt", "search", "interactive_main"})
     text += interactive_part(name);
   return text;
 }
@@ -100,8 +100,7 @@ std::string interactive_page(const std::string& run, Bytes memory) {
                          {"switches", switches_json(chip)},
                          {"mechanisms", mechanisms_json()},
                          {"chip", json_of(base::parse_yaml(info.platform_yaml))}};
-  const std::string plain = traces::plain_file(traces::kWorkTraceFile, file.string(), bytes,
-                                               traces::MemoryBudget(memory));
+  const std::string plain = traces::plain_file(trace, bytes, sim::code_of(chip.config));
   return html_page(
       data, {interactive_scripts(),
              fmt::format("<style>\n{}</style>\n", interactive_part("interactive")) +

@@ -35,7 +35,7 @@ function answerTiles(now, recorded, area, recordedArea) {
       tile('Mean frame', statistic('frame.time.mean'), 'ms', 1e-6),
       tile('99 of 100 frames', statistic('frame.time.p99'), 'ms', 1e-6),
       tile('Worst frame', statistic('frame.time.worst'), 'ms', 1e-6),
-      tile('Late, with waiting', (outcome) => outcome.late, `of ${now.frames} frames`),
+      tile('Late, with waiting', (outcome) => outcome.late, `of ${now.frames}`),
       tile('Energy a frame', statistic('energy.frame'), 'mJ'), {
         title: 'Area',
         value: numberText(area, 4),

@@ -13,7 +13,7 @@ class InteractivePage {
     this.setting.read(location.hash.slice(1));
     this.state = {latencies: [], recorded: [], period_ns: data.period_ns, frame: this.setting.frame};
     this.bars = {};
-    this.knobs = knobCards(this.setting, () => this.changed());
+    this.knobs = knobCards(this.setting, () => this.moved());
     this.parts = {
       verdict: element('div'),
       tiles: element('div'),
@@ -48,6 +48,7 @@ class InteractivePage {
         this.draw();
         this.showAnswer();
         this.changed();
+        this.showChanged();
       },
       refusals: () => {},
       failure: (text) => this.fail(text)
@@ -79,6 +80,7 @@ class InteractivePage {
     this.timeFrame();
     this.latency = latencyFigure(this.state, (number) => this.select(number));
     this.stages = stageBars(this.bars, this.data.mechanisms);
+    this.gantt = frameGantt(this.bars, this.setting);
     document.getElementById('content').replaceChildren(
         element(
             'section', {id: 'verdict', 'aria-label': 'Verdict'},
@@ -96,15 +98,41 @@ class InteractivePage {
                     element('div', {class: 'controls'}, element('label', {}, 'frame', frame),
                             button('Worst frame', () => this.selectWorst()),
                             button('As recorded', () => this.back()),
+                            button('Smallest that is never late', () => findSmallest(this)),
                             button('Copy as command', (event) => this.copy(event.target))),
                     command),
-                this.latency, this.stages)));
+                this.latency, this.gantt, this.stages)));
     drawAll();
   }
+  /** An address may have moved a slider that is out of sight. */
+  showChanged() {
+    const node = this.knobs.nodes.find((_, i) => this.setting.isMoved(i));
+    if (node) node.parentNode.scrollTop = node.offsetTop - 12;
+  }
 
+  /** By somebody, which ends a search. */
+  moved() {
+    this.searching = null;
+    this.changed();
+  }
   back() {
     this.setting.reset();
-    this.changed();
+    this.moved();
+  }
+  /** @returns whether the search that begins here goes on */
+  startSearch() {
+    const search = this.searching = {};
+    return () => this.searching === search;
+  }
+  say(text) {
+    this.parts.status.textContent = text;
+  }
+  /** The outcome of the flight with the present setting, or {failure: why it cannot run}. */
+  timed() {
+    return new Promise((done) => {
+      this.onTimed = done;
+      this.changed();
+    });
   }
   select(number) {
     if (!(Number.isInteger(number) && number >= 0 && number < this.data.frames)) return;
@@ -157,6 +185,7 @@ class InteractivePage {
         sentence(this.setting, this.bars.now, this.bars.recorded, this.data.mechanisms) :
         '';
     this.stages.redraw();
+    this.gantt.redraw();
     this.rest = setTimeout(() => this.rested(runs), kRest);
     this.latency.redraw();
     this.knobs.show();
@@ -184,8 +213,12 @@ class InteractivePage {
       refusals: (refusals) => {
         this.knobs.answers(refusals);
         document.body.dataset.ready = this.setting.fragment();
+        this.onTimed?.(runs ? this.now : {failure: this.parts.failure.textContent});
       },
-      failure: (text) => this.fail(text)
+      failure: (text) => {
+        this.fail(text);
+        this.onTimed?.({failure: text});
+      }
     });
   }
 }

@@ -29,6 +29,8 @@ function knobCards(setting, changed) {
     questions: () => [...knobs.flatMap((knob, i) => knob.values.map(
                           (_, at) => setting.lines({knob: [i, at]}))),
                       ...switches.map((_, i) => setting.lines({switch: [i, true]}))],
+    /** Whether a value of a slider can run, as far as is known. */
+    can: (i, at) => !views[i].refusals()[at],
     answers(refusals) {
       const rest = [...refusals];
       views.forEach((view, i) => view.refuse(rest.splice(0, knobs[i].values.length)));
@@ -73,6 +75,7 @@ function knobView(setting, knob, i, changed) {
   }
   return {
     show,
+    refusals: () => refusals,
     refuse: (answers) => {
       refusals = answers;
       show();

@@ -25,6 +25,11 @@ class Setting {
     return this.lines().length === 0;
   }
 
+  /** @param i  of the sliders, and behind them the switches */
+  isMoved(i) {
+    const knob = this.data.knobs[i];
+    return knob ? this.at[i] !== knob.recorded : this.on[i - this.data.knobs.length];
+  }
   /** Of the sliders that are not as recorded. */
   knobLines(other = {}) {
     return this.data.knobs.flatMap((knob, i) => {
