@@ -3,6 +3,8 @@
 
 #include "tests/support/run_program.h"
 #include "tools/app/table/json.h"
+#include "traces/datasets/asl_reader.h"
+#include "traces/datasets/image_source.h"
 #include "traces/synthesis/synthetic.h"
 
 namespace leviosim::tools {
@@ -38,7 +40,7 @@ TEST_F(RecordingCommand, FindsNothingAgainstAFlightThatIsWell) {
     EXPECT_NE(result.out.find(part), std::string::npos) << part << '\n' << result.out;
   const ProgramResult json = run_program(
       folder_.path(), {"recording", (folder_ / "flight").string(), "--quiet", "--json"});
-  EXPECT_EQ(Json::parse(json.out).at("rows").size(), 4u) << json.out;
+  EXPECT_EQ(Json::parse(json.out).at("rows").size(), 5u) << json.out;
 }
 
 TEST_F(RecordingCommand, SaysWhatAnAccelerometerReadsAtRestAndWhatToSet) {
@@ -48,6 +50,27 @@ TEST_F(RecordingCommand, SaysWhatAnAccelerometerReadsAtRestAndWhatToSet) {
   const std::string advice = "imu0/sensor.yaml: accelerometer_scale: 0.999";
   EXPECT_NE(wrong.out.find("the accelerometer reads 10.1"), std::string::npos) << wrong.out;
   EXPECT_NE(wrong.out.find(advice), std::string::npos) << wrong.out;
+}
+
+/// The mask that it writes is what it asks for.
+TEST_F(RecordingCommand, FindsPixelsThatNeverChangeAndWritesTheirMask) {
+  const traces::Dataset data = traces::open_asl(folder_ / "flight");
+  const traces::ImageSize size{data.camera.width, data.camera.height};
+  const traces::ImageSource images(data, size);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    std::vector<std::uint8_t> picture = images.read_full(i);
+    for (int y = 0; y < size.height; ++y)
+      picture[static_cast<std::size_t>(y * size.width + size.width / 3)] = 255;
+    outputs::write_file_atomically(data.frames[i].path, traces::encode_png(size, picture));
+  }
+  const std::string mask = (folder_ / "flight/mav0/cam0/mask.png").string();
+  const ProgramResult found = run_program(
+      folder_.path(), {"recording", (folder_ / "flight").string(), "--quiet", "--mask", mask});
+  EXPECT_EQ(found.status, 1) << found.err;
+  EXPECT_NE(found.out.find(fmt::format("{} never change", size.height)), std::string::npos)
+      << found.out;
+  append("cam0/sensor.yaml", "faulty_pixels: mask.png");
+  EXPECT_EQ(check().status, 0) << check().out;
 }
 
 TEST_F(RecordingCommand, RefusesWhatIsNone) {

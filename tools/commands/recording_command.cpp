@@ -1,5 +1,5 @@
-// `leviosim recording`: whether a recording is what an odometry can use: rates, gaps, and what the
-// accelerometer reads at rest.
+// `leviosim recording`: whether a recording is what an odometry can use: rates, gaps, pixels that
+// show nothing, and what the accelerometer reads at rest.
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -12,12 +12,15 @@
 
 #include "sim/base/printable.h"
 #include "tools/app/cli/exit_status.h"
+#include "tools/app/cli/outputs.h"
 #include "tools/app/cli/printout.h"
 #include "tools/app/cli/progress_line.h"
 #include "tools/app/run/flight_cache.h"
 #include "tools/app/table/table_files.h"
 #include "tools/app/table/terminal_table.h"
 #include "tools/commands/commands.h"
+#include "traces/datasets/faulty_pixels.h"
+#include "traces/datasets/image_source.h"
 #include "traces/datasets/rest_gravity.h"
 #include "traces/recordings/recording.h"
 
@@ -27,6 +30,8 @@ namespace {
 struct RecordingOptions {
   std::string folder;
   std::string frames;
+  std::string mask;  ///< file to write
+  bool force = false;
   bool quiet = false;
   bool json = false;
 };
@@ -61,8 +66,27 @@ Finding gravity(const traces::Dataset& data) {
   return finding;
 }
 
-std::vector<Finding> findings_of(const traces::Dataset& data) {
-  std::vector<Finding> findings{periods("images", traces::stamps_of(data.frames))};
+/// In pictures from all over the recording: the longer it moves, the surer is what does not change.
+traces::PixelMask faulty_pixels(const traces::Dataset& data) {
+  constexpr std::size_t kMostPictures = 40;
+  const traces::ImageSize size{data.camera.width, data.camera.height};
+  const traces::ImageSource images(data, size);
+  traces::FaultyPixelSearch search(size);
+  const std::size_t step = std::max<std::size_t>(1, images.size() / kMostPictures);
+  for (std::size_t i = 0; i < images.size(); i += step) search.add(images.read_full(i));
+  return search.found();
+}
+
+Finding pixels(const traces::PixelMask& faulty) {
+  const auto number = std::count_if(faulty.begin(), faulty.end(), [](int p) { return p != 0; });
+  Finding finding{"faulty pixels", number == 0 ? "none" : fmt::format("{} never change", number)};
+  if (number > 0)
+    finding.advice = "cam0/sensor.yaml: faulty_pixels: mask.png, which --mask cam0/mask.png writes";
+  return finding;
+}
+
+std::vector<Finding> findings_of(const traces::Dataset& data, const traces::PixelMask& faulty) {
+  std::vector<Finding> findings{periods("images", traces::stamps_of(data.frames)), pixels(faulty)};
   if (data.imu.empty()) {
     findings.push_back({"IMU", "none: a profile without IMU, such as levio-no-imu, can use it"});
     return findings;
@@ -90,18 +114,21 @@ const Columns<Finding>& finding_columns() {
 
 void run(const CLI::App& command, const RecordingOptions& options) {
   require(command, "DIR", "the folder of a recording");
+  std::optional<outputs::OutputFile> mask = claimed_file(
+      {.option = "--mask", .path = options.mask, .replace = options.force, .inputs = {}});
   traces::OpenOptions open;
   if (!options.frames.empty()) open.frames = traces::parse_frame_range(options.frames);
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   const std::string folder =
       options.folder == "synthetic" ? cached_flight(style).string() : options.folder;
   const traces::Dataset data = traces::open_recording(folder, open);
-  const std::vector<Finding> findings = findings_of(data);
+  const traces::PixelMask faulty = faulty_pixels(data);
+  const std::vector<Finding> findings = findings_of(data, faulty);
   const auto advice = std::find_if(findings.begin(), findings.end(),
                                    [](const Finding& f) { return !f.advice.empty(); });
   const bool is_well = advice == findings.end();
   const Table table = table_of(finding_columns(), findings);
-  print(printout(
+  const Printout shown = printout(
       options.json,
       [&] {
         return Printout(terminal_text(table))
@@ -109,7 +136,12 @@ void run(const CLI::App& command, const RecordingOptions& options) {
                             : fmt::format("verdict: {}: {}", advice->found, advice->advice),
                     {fmt::format("leviosim run --data {} --out mine", shell_word(options.folder))});
       },
-      [&] { return table_document("recording", table); }));
+      [&] { return table_document("recording", table); });
+  if (faulty.empty())
+    print(shown);
+  else
+    publish({{mask, traces::encode_png({data.camera.width, data.camera.height}, faulty), "mask"}},
+            shown);
   if (!is_well) throw LimitNotMet();
 }
 
@@ -117,10 +149,13 @@ void run(const CLI::App& command, const RecordingOptions& options) {
 
 Command add_recording_command(CLI::App& app, const Arguments&) {
   CLI::App* command =
-      app.add_subcommand("recording", "Check a recording: rates, gaps, gravity at rest");
+      app.add_subcommand("recording", "Check a recording: rates, gaps, pixels, gravity at rest");
   const auto options = std::make_shared<RecordingOptions>();
   command->add_option("DIR", options->folder, "folder of a recording (EuRoC, TUM, KITTI)");
   TextOptions{*command}("--frames", options->frames, "A:B", "frames, B exclusive [all]");
+  TextOptions{*command}("--mask", options->mask, "FILE.png",
+                        "file for a mask of the faulty pixels, if there are any");
+  command->add_flag("--force", options->force, "replace the mask");
   command->add_flag("--quiet", options->quiet, "no progress");
   add_examples(*command, {"leviosim recording flight"});
   add_json_option(*command, options->json);

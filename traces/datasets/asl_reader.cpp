@@ -224,6 +224,7 @@ Dataset read_asl(const fs::path& folder) {
   data.camera = read_camera_model(require_file(mav0, "cam0/sensor.yaml"));
   data.imu_model = read_imu_model(require_file(mav0, "imu0/sensor.yaml"));
   read_asl_streams(mav0, data);
+  take_faulty_pixels(mav0 / "cam0/sensor.yaml", data);
   expect_rates(mav0, data);
   apply_calibration(data);
   return data;

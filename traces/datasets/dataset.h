@@ -17,6 +17,7 @@
 
 #include "traces/datasets/camera_model.h"
 #include "traces/datasets/disturbance.h"
+#include "traces/datasets/faulty_pixels.h"
 #include "traces/datasets/frame_range.h"
 #include "traces/datasets/imu_model.h"
 
@@ -56,6 +57,7 @@ struct Dataset {
   std::vector<FrameRef> frames;               ///< never empty
   std::vector<ImuSample> imu;                 ///< covers the frames; empty without a gyroscope
   std::vector<GroundTruthPose> ground_truth;  ///< empty if the folder has none
+  PixelMask faulty_pixels = {};               ///< of the camera, which an ImageSource mends
   Disturbance disturbance{};                  ///< that an ImageSource still makes to pictures
   std::vector<InputFiles> files = {};         ///< all that was read but the pictures
   std::string pictures = "cam0/data";         ///< what their folder is called

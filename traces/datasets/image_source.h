@@ -34,13 +34,14 @@ class ImageSource {
   /// The prepared image of frame i < size(). Throws InputError, naming image, file and line, if it
   /// cannot be decoded, has another size than sensor.yaml says, or is not 8-bit grey.
   GrayImage read(std::size_t i) const;
+  /// The same as the camera took it, faulty pixels mended.
+  std::vector<std::uint8_t> read_full(std::size_t i) const;
 
  private:
-  std::vector<std::uint8_t> decode(const FrameRef& frame) const;
-
   std::filesystem::path frames_csv_;
   std::vector<FrameRef> frames_;
   ImageSize full_size_;
+  PixelMending mending_;
   Disturbance disturbance_;
   ImagePreparation preparation_;
 };

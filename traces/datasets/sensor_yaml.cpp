@@ -139,6 +139,18 @@ CameraModel read_camera_model(const std::filesystem::path& sensor_yaml) {
   return camera;
 }
 
+void take_faulty_pixels(const std::filesystem::path& sensor_yaml, Dataset& data) {
+  const YamlMap sensor = YamlMap::load(sensor_yaml);
+  const std::string key = "faulty_pixels";
+  if (!sensor.has(key)) return;
+  const std::filesystem::path name = sensor.text(key);
+  if (name.empty() || name != name.filename())
+    sensor.fail(key, "expected the name of a picture in the same folder");
+  const std::filesystem::path mask = sensor_yaml.parent_path() / name;
+  data.faulty_pixels = read_faulty_pixels(mask, {data.camera.width, data.camera.height});
+  data.files.push_back({"mask of faulty pixels", {mask}});
+}
+
 namespace {
 
 void expect_rate(const std::filesystem::path& sensor_yaml, double stated_hz,

@@ -21,6 +21,10 @@ constexpr int kMostPixels = 1 << 24;
 /// ours: CameraModel::prepared.
 CameraModel read_camera_model(const std::filesystem::path& sensor_yaml);
 
+/// Takes the mask that cam0/sensor.yaml names as `faulty_pixels`, which is ours: a picture beside
+/// it in which all but black marks pixels that show nothing.
+void take_faulty_pixels(const std::filesystem::path& sensor_yaml, Dataset& data);
+
 /// Holds the rates that cam0/sensor.yaml and imu0/sensor.yaml in the folder state against the
 /// median periods of frames and samples, where there are three.
 void expect_rates(const std::filesystem::path& folder, const Dataset& data);

@@ -136,6 +136,7 @@ Dataset read_tum_rgbd(const fs::path& folder) {
   }
   for (const char* name : {"cam0/sensor.yaml", kFrames, "imu0/sensor.yaml", kGyro, kAccel, kTruth})
     if (base::is_file(folder / name)) data.files.push_back({name, {folder / name}});
+  take_faulty_pixels(folder / "cam0/sensor.yaml", data);
   return data;
 }
 
