@@ -289,13 +289,13 @@ figure slider-before
 needs data engine
 after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
 shows 'leviosim report recorded --interactive -o chip.html'
-photo 1440x900 chip.html#cluster.icache.shared_size=2KiB
+photo 1440x1040 chip.html#cluster.icache.shared_size=2KiB
 
 figure slider-after
 needs data engine
 after 'leviosim run --platform gap9 --data euroc/MH_01_easy_t05_t20 --record --out recorded'
 shows 'leviosim report recorded --interactive -o chip.html'
-photo 1440x900 chip.html#cluster.icache.shared_size=8KiB
+photo 1440x1040 chip.html#cluster.icache.shared_size=8KiB
 
 figure timeline
 needs data
