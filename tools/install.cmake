@@ -54,6 +54,7 @@ function(leviosim_install_library)
           FILES_MATCHING PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.py" PATTERN "*.mk" PATTERN "Makefile"
           PATTERN "rv32imfc_costs.csv")
   install(DIRECTORY sim/work DESTINATION ${share}/sim COMPONENT library FILES_MATCHING PATTERN "*.cpp")
+  install(FILES sim/base/nearest_name.cpp DESTINATION ${share}/sim/base COMPONENT library)
   install(DIRECTORY platform_models/isa DESTINATION ${share}/platform_models COMPONENT library
           FILES_MATCHING PATTERN "*.yaml")
   install(CODE "

@@ -186,6 +186,21 @@ TEST(NextRobustnessOf, StandsStillAfterMotion) {
   RecordProperty("moved_mm", static_cast<int>(moved * 1000));
 }
 
+/// Rest tells nothing of how far a map came that is not aligned yet: no motion is invented.
+TEST(NextRobustnessOf, StandsStillBeforeItsMapIsAligned) {
+  for (const double begin : {0.6, 0.8, 1.0}) {
+    const Flown flown =
+        fly(draw_flight(PacedFlight(3, with_standstill(begin, 4)), 4), profile_named("next", 1));
+    ASSERT_TRUE(flown.finite);
+    double moved = 0;
+    for (const traces::StampedPose& pose : flown.trajectory)
+      moved = std::max(moved, (pose.T_world_body.translation() -
+                               flown.trajectory.front().T_world_body.translation())
+                                  .norm());
+    EXPECT_LT(moved, 0.02) << begin;
+  }
+}
+
 /// A gyro's bias below 0 there cannot be, so every map after the first frame's is refused.
 TEST(NextRobustnessOf, SaysWhenItsMapStartsAnew) {
   const ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1, 4)), 1);

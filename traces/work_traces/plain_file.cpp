@@ -36,7 +36,7 @@ std::string plain_file(const WorkTrace& trace, std::string_view bytes,
   for (std::size_t i = 0; i < sections.size(); ++i) {
     MemoryBudget budget = trace.budget();
     std::string content = unpacked(sections[i], trace.name(), budget);
-    const bool holds_frames = i > 0 && i <= trace.chunks().size();
+    const bool holds_frames = i % 2 == 0 && i < 2 * trace.chunks().size();
     if (code && holds_frames) content = with_code_of(*code, content, trace, budget);
     ByteWriter head;
     head.u32(static_cast<std::uint32_t>(content.size()));

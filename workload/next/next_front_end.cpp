@@ -51,7 +51,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   } else if (began_in_motion()) {
     start_anew(frame);
   } else if (starts_at_rest()) {
-    start_at_rest(frame, *inertial_.rest());
+    come_to_rest(frame, report, *inertial_.rest());
   } else if (!map_is_plausible(state_, prediction_, !initialises())) {
     start_anew(frame);
     report.map_restarts = 1;
@@ -63,7 +63,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
       locate(frame, report);
     if (images_rest()) {
       report.source = PoseSource::First;
-      start_at_rest(frame, inertial_.recent());
+      come_to_rest(frame, report, inertial_.recent());
     } else {
       report.keyframe = is_keyframe(frame, report);
       if (loop_ && !initialises()) loop_->follow(frame, report);
@@ -102,7 +102,8 @@ bool NextFrontEnd<P>::starts_at_rest() const {
 
 /// An even flight looks like rest to the IMU: before a window begins at rest, the image is compared
 /// with the keyframe, which is the frame before, or less than a second old. From where it moves,
-/// the IMU is not believed.
+/// the IMU is not believed. Images with few features, whose matches are wrong as often as right,
+/// contradict nothing.
 template <class P>
 void NextFrontEnd<P>::look_for_motion(TrackedFrame<P>& frame) {
   using F = typename P::F32;
@@ -112,6 +113,7 @@ void NextFrontEnd<P>::look_for_motion(TrackedFrame<P>& frame) {
   };
   if (!inertial_.rest() && !inertial_.rest_is_rejected()) rest_ = {};
   if (!starts_at_rest() || state_.time_since_keyframe > limits.image_time) return;
+  if (frame.features.list.count < state_.profile.recovery.min_features) return;
   const work::Arena::Frame memory(state_.machine.local());
   match_last_keyframe(frame);
   align_features<P>(state_, frame, std::nullopt);
@@ -153,6 +155,19 @@ void NextFrontEnd<P>::match_last_keyframe(TrackedFrame<P>& frame) {
   match_keyframe<P>(state_, frame);
 }
 
+/// Rest tells nothing of how far a map came that is not aligned: the vehicle is where it was
+/// reported, and what was reported before it stays a guess.
+template <class P>
+void NextFrontEnd<P>::come_to_rest(TrackedFrame<P>& frame, FrameReport& report,
+                                   const Stillness<P>& rest) {
+  frame.T_world_camera = prediction_.last_pose();
+  if (initialises()) {
+    report.earlier.clear();
+    hold_position(frame);
+  }
+  start_at_rest(frame, rest);
+}
+
 /// A vehicle that stands still before the first window is full starts anew with every frame, from
 /// where the last one was: at rest, gravity and the gyro's bias can be read off and the velocity is
 /// zero, while noise alone would sooner or later look like parallax, and the scale of a map with
@@ -163,7 +178,7 @@ void NextFrontEnd<P>::start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& 
   const work::Arena::Frame memory(local);
   const auto stage = state_.machine.stage(stages::kTriangulation);
   const auto record = local.alloc<Floats>("IMU interval", Preintegration<P>::kFloats);
-  frame.T_world_last = frame.T_world_camera = prediction_.last_pose();
+  frame.T_world_last = frame.T_world_camera;
   Mat3<P>& R = frame.T_world_camera.R;
   R = levelled<P>(R, rest.accel_mean);
   begin_map<P>(state_, frame, record, {rest.gyro_mean, {0.0f, 0.0f, 0.0f}},

@@ -42,6 +42,7 @@ class NextFrontEnd : public FrontEnd<P> {
   bool began_in_motion() const;
   bool has_one_keyframe() const;
   void match_last_keyframe(TrackedFrame<P>& frame);
+  void come_to_rest(TrackedFrame<P>& frame, FrameReport& report, const Stillness<P>& rest);
   void start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& rest);
   bool images_rest() const;
   void start_anew(TrackedFrame<P>& frame);

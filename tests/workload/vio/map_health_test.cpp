@@ -112,6 +112,26 @@ TEST_F(MapHealthOf, PosesThatAreCorrectedStillHaveThePresentScale) {
   EXPECT_EQ(frames(12), Health::good);
 }
 
+/// What a window said of the scale does not become certain because a map begins at rest.
+TEST_F(MapHealthOf, AMapThatBeginsAtRestLeavesThePathWithTheScaleThatWasKnown) {
+  window({.scale_sigma = 0.15f});
+  EXPECT_EQ(correcting(20), Health::unreliable);
+  map_.fit = {};
+  EXPECT_EQ(frame(PoseSource::First), Health::unreliable);
+  EXPECT_EQ(frame(PoseSource::First), Health::unreliable);
+}
+
+/// Guesses are not judged: their length is no path beside which an error would be small.
+TEST_F(MapHealthOf, GuessesBeforeAMapThatBeginsAtRestAreNoPath) {
+  map_.aligned = false;
+  frames(40, PoseSource::Initialising);
+  frame(PoseSource::First);
+  map_.aligned = true;
+  EXPECT_EQ(frame(PoseSource::First), Health::good);
+  frames(10, PoseSource::Predicted);
+  EXPECT_EQ(frame(PoseSource::Tracked), Health::unreliable);
+}
+
 /// A map in a wrong minimum is sure of what it found, and wanders on.
 TEST_F(MapHealthOf, AScaleThatWindowsChangeAgainAndAgainIsUncertainForAWhile) {
   window({.scale_sigma = 0.03f});

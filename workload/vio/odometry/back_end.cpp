@@ -350,13 +350,24 @@ void MapHealth::add_drift(const FrameReport& report, float dt) {
     open_m_ += moved;
   blind_s_ = blind ? blind_s_ + dt : 0;
   if (blind) drift_m_ += (limits.blind_velocity + limits.blind_acceleration * blind_s_) * dt;
-  if (!report.earlier.empty()) {
+  if (report.source == PoseSource::First) {  // a map begins: no window says more of what was before
+    if (was_aligned_ || path_m_ > 0)
+      settle(sigma_);
+    else
+      drift_m_ = open_m_ = 0;  // of guesses
+  } else if (!report.earlier.empty()) {
     open_m_ = length_of(report.earlier) + distance(report.earlier.front().p_world_camera, now);
   } else if (!waits()) {
-    drift_m_ += scale_sigma() * open_m_;
-    path_m_ += std::exchange(open_m_, 0.0f);
+    settle(scale_sigma());
   }
+  sigma_ = scale_sigma();
   if (report.map_restarts > 0 && was_aligned_) drift_m_ += profile_.recovery.max_correction;
+}
+
+/// Nothing corrects the open path any more.
+void MapHealth::settle(float sigma) {
+  drift_m_ += sigma * open_m_;
+  path_m_ += std::exchange(open_m_, 0.0f);
 }
 
 /// Whether how far the path's end may be off matters.

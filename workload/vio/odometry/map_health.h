@@ -13,7 +13,9 @@
 //                window could not be solved; of the error of poses from the IMU alone; of the
 //                correction when images came back; and of what may be missing where a map was
 //                lost. It never shrinks, but weighs less as the path grows. Poses that wait for
-//                the alignment have the map's present scale
+//                the alignment have the map's present scale. A map that begins anew at rest leaves
+//                the path before it with the scale that was known then; where none was known, its
+//                poses are guesses, which are not judged
 //
 // A few operations a frame, which are not counted.
 #pragma once
@@ -45,6 +47,7 @@ class MapHealth {
   void track(const FrameReport& report, float dt);
   void follow_corrections(const std::vector<EarlierPose>& earlier, float dt);
   void add_drift(const FrameReport& report, float dt);
+  void settle(float sigma);
   bool waits() const;
   bool contradicts_imu() const;
   bool drifts() const;
@@ -63,6 +66,7 @@ class MapHealth {
   float open_m_ = 0;           ///< path whose poses are still corrected [m]
   float path_m_ = 0;           ///< path before it [m]
   float drift_m_ = 0;          ///< uncertainty of that path [m]
+  float sigma_ = 0;            ///< of the scale, after the last frame
   std::vector<EarlierPose> earlier_;  ///< corrected poses of the last frame
   float corrections_ = 0;             ///< relative changes of their length, summed over a second
 };
