@@ -72,7 +72,8 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   }
   if (initialises() || !path_.empty()) path_.remember();
   prediction_.remember(frame, report);
-  if (initialises()) hold_position(frame);
+  if (initialises())
+    if (const std::optional<Vec3<P>> held = held_position()) frame.T_world_camera.t = *held;
   complete<P>(state_, frame, report);
   if (initialises()) report.state = static_cast<int>(PoseState::Initialising);
   report.at_rest = inertial_.rest() || images_rest() ? 1 : 0;
@@ -160,12 +161,12 @@ void NextFrontEnd<P>::match_last_keyframe(TrackedFrame<P>& frame) {
 template <class P>
 void NextFrontEnd<P>::come_to_rest(TrackedFrame<P>& frame, FrameReport& report,
                                    const Stillness<P>& rest) {
-  frame.T_world_camera = prediction_.last_pose();
+  std::optional<Vec3<P>> held;
   if (initialises()) {
     report.earlier.clear();
-    hold_position(frame);
+    held = held_position();
   }
-  start_at_rest(frame, rest);
+  start_at_rest(frame, rest, held);
 }
 
 /// A vehicle that stands still before the first window is full starts anew with every frame, from
@@ -173,11 +174,14 @@ void NextFrontEnd<P>::come_to_rest(TrackedFrame<P>& frame, FrameReport& report,
 /// zero, while noise alone would sooner or later look like parallax, and the scale of a map with
 /// few keyframes is a guess.
 template <class P>
-void NextFrontEnd<P>::start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& rest) {
+void NextFrontEnd<P>::start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& rest,
+                                    const std::optional<Vec3<P>>& held) {
   work::Arena& local = state_.machine.local();
   const work::Arena::Frame memory(local);
   const auto stage = state_.machine.stage(stages::kTriangulation);
   const auto record = local.alloc<Floats>("IMU interval", Preintegration<P>::kFloats);
+  frame.T_world_camera = prediction_.last_pose();
+  if (held) frame.T_world_camera.t = *held;
   frame.T_world_last = frame.T_world_camera;
   Mat3<P>& R = frame.T_world_camera.R;
   R = levelled<P>(R, rest.accel_mean);
@@ -234,11 +238,11 @@ void NextFrontEnd<P>::correct_path(float dt, FrameReport& report) {
 /// While no alignment of more than few keyframes has converged, its scale is a guess, and so is how
 /// far the camera has gone: it is reported where the map began. The map itself keeps the guess.
 template <class P>
-void NextFrontEnd<P>::hold_position(TrackedFrame<P>& frame) const {
+std::optional<Vec3<P>> NextFrontEnd<P>::held_position() const {
   const auto stage = state_.machine.stage(stages::kGuided);
   const auto& graph = state_.graph_in_l2;
-  if (!map_.converged)
-    frame.T_world_camera.t = graph.keyframe(graph.keyframe_slot(0)).T_world_camera.t;
+  if (map_.converged) return std::nullopt;
+  return graph.keyframe(graph.keyframe_slot(0)).T_world_camera.t;
 }
 
 /// Landmarks without a distance tell no pose: the IMU moves the last keyframe on, as far as its

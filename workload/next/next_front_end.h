@@ -43,13 +43,14 @@ class NextFrontEnd : public FrontEnd<P> {
   bool has_one_keyframe() const;
   void match_last_keyframe(TrackedFrame<P>& frame);
   void come_to_rest(TrackedFrame<P>& frame, FrameReport& report, const Stillness<P>& rest);
-  void start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& rest);
+  void start_at_rest(TrackedFrame<P>& frame, const Stillness<P>& rest,
+                     const std::optional<Vec3<P>>& held);
   bool images_rest() const;
   void start_anew(TrackedFrame<P>& frame);
   bool initialises() const;
   void correct_path(float dt, FrameReport& report);
   float any_depth() const;
-  void hold_position(TrackedFrame<P>& frame) const;
+  std::optional<Vec3<P>> held_position() const;
   void follow(TrackedFrame<P>& frame, FrameReport& report);
   void locate(TrackedFrame<P>& frame, FrameReport& report);
   std::optional<Pose<P>> pose_by_prediction(const TrackedFrame<P>& frame, FrameReport& report);
