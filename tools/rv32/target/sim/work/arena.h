@@ -15,6 +15,12 @@
 
 namespace leviosim::work {
 
+/// Without the text, which only a report of the simulator shows.
+class MemoryOverflow {
+ public:
+  MemoryOverflow(std::string_view, std::string_view, Bytes = Bytes(0)) {}
+};
+
 class Arena {
  public:
   Arena(std::string_view, Bytes capacity, int = 4)
