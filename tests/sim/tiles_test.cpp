@@ -13,7 +13,7 @@ namespace leviosim::work {
 namespace {
 
 using P = Counting;
-using Arguments = P::Span<P::U32>;
+using Words = P::Span<P::U32>;
 
 TEST(TilePlan, CoversAllItemsOnceAndHasThoseAround) {
   for (const int each : {1, 7, 16, 100, 500}) {
@@ -73,16 +73,16 @@ Passed add_one_to_all(int n, int each, int work_per_word = 0) {
     TilesOut<P, P::U32> out(machine, "out", each);
     for_each_tile<P>(
         machine, TilePlan(0, n, each, 0, n),
-        [&](int, const Tile& tile, Arguments in) {
-          const Arguments to = out.next(machine);
+        [&](int, const Tile& tile, Words in) {
+          const Words to = out.next(machine);
           for (int i : P::range(0, tile.size())) {
             P::U32 word = in[i];
             for ([[maybe_unused]] int k : P::range(0, work_per_word)) word = word ^ P::U32(0u);
             to[i] = word + P::U32(1u);
           }
-          out.send(machine, Arguments(passed.result.data() + tile.begin, tile.size()));
+          out.send(machine, Words(passed.result.data() + tile.begin, tile.size()));
         },
-        PassingBlock<P, P::U32>{"in", Arguments(words.data(), n)});
+        PassingBlock<P, P::U32>{"in", Words(words.data(), n)});
     out.finish(machine);
   }
   passed.job = machine.take_job();
@@ -122,14 +122,14 @@ Job keep_two_thirds(int n, int buffers) {
     TilesOut<P, P::U32> out(machine, "out", 10, false, buffers);
     for_each_tile<P>(
         machine, TilePlan(0, n, 10, 0, n, buffers),
-        [&](int i, const Tile& tile, Arguments in) {
-          const Arguments to = out.next(machine);
+        [&](int i, const Tile& tile, Words in) {
+          const Words to = out.next(machine);
           if (i % 3 == 2) return;
           for (int k : P::range(0, tile.size())) to[k] = P::U32(in[k]);
-          out.send(machine, Arguments(kept.data() + total, tile.size()));
+          out.send(machine, Words(kept.data() + total, tile.size()));
           total += tile.size();
         },
-        PassingBlock<P, P::U32>{"in", Arguments(words.data(), n)});
+        PassingBlock<P, P::U32>{"in", Words(words.data(), n)});
     out.finish(machine);
   }
   for (int i = 0, at = 0; i < n; ++i) {
@@ -155,8 +155,8 @@ TEST(Tiles, TellWhatAProgramWithRoomWouldNotHaveMoved) {
   Machine machine({.cores = 1, .capacity = Bytes(64 * 1024), .record = true});
   std::vector<P::U32> words(100);
   const auto stage = machine.stage("s");
-  const Arguments all(words.data(), 100);
-  const auto nothing = [](int, const Tile&, Arguments) {};
+  const Words all(words.data(), 100);
+  const auto nothing = [](int, const Tile&, Words) {};
   for_each_tile<P>(machine, TilePlan(10, 90, 20, 3, 100), nothing,
                    PassingBlock<P, P::U32>{"once", all});
   for_each_tile<P>(machine, TilePlan(0, 100, 20, 0, 100), nothing,
@@ -169,11 +169,11 @@ TEST(Tiles, TellWhatAProgramWithRoomWouldNotHaveMoved) {
 
 TEST(Tiles, OfAMemoryBeforeExternalMemoryComeFromThere) {
   Machine machine({.cores = 1, .memory = "L2", .record = true, .external = Bytes(4096)});
-  const Arguments behind = machine.external().alloc<Arguments>("block", 100);
+  const Words behind = machine.external().alloc<Words>("block", 100);
   {
     const auto stage = machine.stage("s");
     for_each_tile<P>(
-        machine, TilePlan(0, 100, 20, 0, 100), [](int, const Tile&, Arguments) {},
+        machine, TilePlan(0, 100, 20, 0, 100), [](int, const Tile&, Words) {},
         PassingBlock<P, P::U32>{"block", behind});
   }
   const Job job = machine.take_job();

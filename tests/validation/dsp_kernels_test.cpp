@@ -103,9 +103,9 @@ TEST(ValidationDspKernels, HardwareRepeatsAllButTheColumns) {
   Machine machine({.cores = 1, .capacity = Bytes(65536), .record = true});
   {
     const auto stage = machine.stage("product");
-    using Arguments = P::Span<P::I32>;
-    const auto a = block<Arguments>(machine, "a", 256), b = block<Arguments>(machine, "b", 256);
-    const auto c = block<Arguments>(machine, "c", 256);
+    using Words = P::Span<P::I32>;
+    const auto a = block<Words>(machine, "a", 256), b = block<Words>(machine, "b", 256);
+    const auto c = block<Words>(machine, "c", 256);
     machine.fork("product", [&](Core& core) { multiply_int32<P>(a, b, c, 16, core); });
   }
   const work::Counts counts = work::counts_of(machine.take_job().stages[0]);

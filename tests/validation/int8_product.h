@@ -16,7 +16,7 @@ void multiply_int8(typename P::template Span<const leviosim::work::I8x4<P>> a,
   namespace work = leviosim::work;
   using I32 = typename P::I32;
   using Word = work::I8x4<P>;
-  using Arguments = typename P::template Span<const Word>;
+  using Words = typename P::template Span<const Word>;
   const typename P::Function function("multiply_int8");
   const int words = n / 4;
   const int columns = (words - core + cores - 1) / cores;
@@ -25,8 +25,8 @@ void multiply_int8(typename P::template Span<const leviosim::work::I8x4<P>> a,
     I32 left_at = work::copied(I32(0));
     I32 sums_at = column_at << 2;
     for ([[maybe_unused]] const int row : P::range(0, n / 2)) {
-      const Arguments rows[2] = {a.subspan(left_at, words), a.subspan(left_at + I32(words), words)};
-      Arguments below[4];
+      const Words rows[2] = {a.subspan(left_at, words), a.subspan(left_at + I32(words), words)};
+      Words below[4];
       I32 below_at = column_at;
       for (int i = 0; i < 4; ++i) {
         if (i > 0) below_at += I32(words);
