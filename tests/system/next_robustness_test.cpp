@@ -12,6 +12,15 @@
 namespace leviosim::vio::test {
 namespace {
 
+/// From the first pose [m].
+double farthest(const traces::Trajectory& poses) {
+  double most = 0;
+  for (const traces::StampedPose& pose : poses)
+    most = std::max(
+        most, (pose.T_world_body.translation() - poses.front().T_world_body.translation()).norm());
+  return most;
+}
+
 struct Case {
   const char* name;
   void (*spoil)(ShortFlight&);
@@ -157,11 +166,7 @@ TEST(NextRobustnessOf, NudgeAtRestBeforeThereIsAMap) {
     nudge(flight, first, first + 6);
     const Flown flown = fly(flight, profile_named("next", 1));
     ASSERT_TRUE(flown.finite);
-    double moved = 0;
-    for (const traces::StampedPose& pose : flown.trajectory)
-      moved = std::max(moved, (pose.T_world_body.translation() -
-                               flown.trajectory.front().T_world_body.translation())
-                                  .norm());
+    const double moved = farthest(flown.trajectory);
     EXPECT_LT(moved, 0.02) << first;
     RecordProperty("moved_mm", static_cast<int>(moved * 1000));
   }
@@ -195,11 +200,7 @@ TEST(NextRobustnessOf, StandsStillBeforeItsMapIsAligned) {
     flight.frames.erase(flight.frames.begin(), flight.frames.begin() + first);
     const Flown flown = fly(flight, profile_named("next", 1));
     ASSERT_TRUE(flown.finite);
-    double moved = 0;
-    for (const traces::StampedPose& pose : flown.trajectory)
-      moved = std::max(moved, (pose.T_world_body.translation() -
-                               flown.trajectory.front().T_world_body.translation())
-                                  .norm());
+    const double moved = farthest(flown.trajectory);
     EXPECT_LT(moved, 0.02) << first;
   }
 }

@@ -107,7 +107,7 @@ TEST(WorkTrace, AReaderSkipsToAFrame) {
 /// As interactive pages hold it: all that is compressed is plain, under checksums that are right.
 TEST(WorkTrace, IsWrittenWithoutCompression) {
   const std::string packed = example_trace(40);
-  const std::string plain = plain_file(WorkTrace("t", packed), packed, {});
+  const std::string plain = plain_file(WorkTrace("t", packed), {});
   std::vector<std::string> contents;
   for (const Section& section : sections_of(kWorkTraceFile, "t", plain)) {
     EXPECT_EQ(section.stored.size(), section.content_size);
@@ -218,12 +218,12 @@ void expect_same(const WorkTrace& expected, const WorkTrace& trace, work::Compil
 TEST(WorkTrace, GivesTheCompiledWorkOfOneInstructionSetAlone) {
   const std::string packed = testing::example_trace_with_offload(40);
   const WorkTrace trace("example", packed);
-  const std::string plain = plain_file(trace, packed, {});
+  const std::string plain = plain_file(trace, {});
   for (const auto code :
        {work::CompiledFor::Rv32imfc, work::CompiledFor::Armv6, work::CompiledFor::Rv32imfcXpulp}) {
     expect_same(trace, trace, code);
     // And so do pages, which keep no other.
-    const std::string part = plain_file(trace, packed, code);
+    const std::string part = plain_file(trace, code);
     EXPECT_LT(part.size(), plain.size());
     std::vector<std::string> contents;
     for (const Section& section : sections_of(kWorkTraceFile, "t", part))

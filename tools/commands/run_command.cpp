@@ -36,8 +36,11 @@ void run(RunCommandOptions options, const Arguments& words) {
   request.data = data_folder(options, style);
   out.reserve(expected_bytes(request, options.record));
   const Manifest manifest = make_manifest(options, request, words);
-  outputs::Spool trace = out.spool(kWorkTraceFile);
-  WorkRecording recording(request.cores, [&](std::string_view bytes) { trace.add(bytes); });
+  std::optional<outputs::Spool> trace;
+  if (options.record) trace.emplace(out.spool(kWorkTraceFile));
+  WorkRecording recording(request.cores, [&](std::string_view bytes) {
+    if (trace) trace->add(bytes);
+  });
   if (options.record) request.recording = &recording;
   request.time_bands = TimeBandsOf::team;
   if (timeline) request.observer = &timeline->observer();
@@ -49,7 +52,7 @@ void run(RunCommandOptions options, const Arguments& words) {
     write_run_folder(out, folder);
     if (!options.record) return;
     work_trace_of(std::move(recording), options, request, manifest);
-    out.write(kWorkTraceFile, trace.content());
+    out.write(kWorkTraceFile, trace->content());
   });
   if (timeline) timeline->publish(*result, !options.json);
   report_and_check(folder, page, gate, !options.json);

@@ -27,25 +27,26 @@ std::string with_code_of(work::CompiledFor code, const std::string& content, con
   return out.take();
 }
 
+std::string plain_section(const std::string& content) {
+  ByteWriter head;
+  head.u32(static_cast<std::uint32_t>(content.size()));
+  head.u32(static_cast<std::uint32_t>(content.size()));
+  head.u32(crc_of(head.bytes(), content));
+  return head.take() + content;
+}
+
 }  // namespace
 
-std::string plain_file(const WorkTrace& trace, std::string_view bytes,
-                       std::optional<work::CompiledFor> code) {
+std::string plain_file(const WorkTrace& trace, std::optional<work::CompiledFor> code) {
   std::string plain = file_head(kWorkTraceFile);
-  const std::vector<Section> sections = sections_of(kWorkTraceFile, trace.name(), bytes);
-  for (std::size_t i = 0; i < sections.size(); ++i) {
+  for (const WorkTrace::Chunk& chunk : trace.chunks()) {
     MemoryBudget budget = trace.budget();
-    std::string content = unpacked(sections[i], trace.name(), budget);
-    const bool holds_frames = i % 2 == 0 && i < 2 * trace.chunks().size();
-    if (code && holds_frames) content = with_code_of(*code, content, trace, budget);
-    ByteWriter head;
-    head.u32(static_cast<std::uint32_t>(content.size()));
-    head.u32(static_cast<std::uint32_t>(content.size()));
-    head.u32(crc_of(head.bytes(), content));
-    plain += head.bytes();
-    plain += content;
+    const std::string frames = unpacked(chunk.section, trace.name(), budget);
+    plain += plain_section(code ? with_code_of(*code, frames, trace, budget) : frames);
+    plain += plain_section(unpacked(chunk.offload, trace.name(), budget));
   }
-  return plain;
+  MemoryBudget budget = trace.budget();
+  return plain + plain_section(unpacked(trace.summary(), trace.name(), budget));
 }
 
 }  // namespace leviosim::traces

@@ -6,16 +6,13 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::traces {
 
-/// @param bytes  of the trace
 /// @param code  whose compiled work is kept; of all if absent
-/// @throws InputError as sections_of(), unpacked() and the readers of frames
-std::string plain_file(const WorkTrace& trace, std::string_view bytes,
-                       std::optional<work::CompiledFor> code);
+/// @throws InputError as unpacked() and the readers of frames
+std::string plain_file(const WorkTrace& trace, std::optional<work::CompiledFor> code);
 
 }  // namespace leviosim::traces

@@ -233,12 +233,12 @@ WorkTrace::WorkTrace(std::string name, std::string bytes, Bytes memory)
     : name_(std::move(name)), bytes_(std::move(bytes)), budget_(memory) {
   take_file(budget_, bytes_.size(), name_);
   const std::vector<Section> sections = sections_of(kWorkTraceFile, name_, bytes_);
-  const Section last = sections.empty() ? Section() : sections.back();
-  const std::string summary = sections.empty() ? "" : unpacked(last, name_, budget_);
+  if (!sections.empty()) summary_ = sections.back();
+  const std::string summary = sections.empty() ? "" : unpacked(summary_, name_, budget_);
   if (!summary.starts_with(kSummary))
     throw InputError(fmt::format("{}, byte {}: the file ends before its summary: it is truncated",
                                  name_, bytes_.size()));
-  const std::string place = fmt::format("{}, summary (section at byte {})", name_, last.offset);
+  const std::string place = fmt::format("{}, summary (section at byte {})", name_, summary_.offset);
   ByteReader in(summary, place, &budget_);
   in.take(kSummary.size(), "the begin of the summary");
   read_summary(in);

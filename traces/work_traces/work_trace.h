@@ -120,6 +120,7 @@ class WorkTrace {
     Section offload;  ///< offload regions in the frames
   };
   const std::vector<Chunk>& chunks() const { return chunks_; }
+  const Section& summary() const { return summary_; }
   const FileFields& fields() const { return fields_; }
 
  private:
@@ -133,6 +134,7 @@ class WorkTrace {
   std::vector<std::string> names_;
   FileFields fields_;
   std::vector<Chunk> chunks_;
+  Section summary_;
 };
 
 /// Makes a trace of frames that are given in order; it holds those of a section only.

@@ -82,8 +82,7 @@ std::string interactive_page(const std::string& run, Bytes memory) {
   if (!base::exists(file))
     throw InputError(fmt::format("{}: holds no {}; expected the folder of a run with --record",
                                  printable(run), kWorkTraceFile));
-  const std::string bytes = traces::work_trace_bytes(file, memory);
-  const traces::WorkTrace trace(file.string(), bytes, memory);
+  const traces::WorkTrace trace(file, memory);
   const traces::WorkTraceInfo& info = trace.info();
   platform::PlatformFile platform(file.string(), info.platform_yaml);
   const platform::ResolvedPlatform chip = platform.resolve({});
@@ -100,7 +99,7 @@ std::string interactive_page(const std::string& run, Bytes memory) {
                          {"switches", switches_json(chip)},
                          {"mechanisms", mechanisms_json()},
                          {"chip", json_of(base::parse_yaml(info.platform_yaml))}};
-  const std::string plain = traces::plain_file(trace, bytes, sim::code_of(chip.config));
+  const std::string plain = traces::plain_file(trace, sim::code_of(chip.config));
   return html_page(
       data, {interactive_scripts(),
              fmt::format("<style>\n{}</style>\n", interactive_part("interactive")) +

@@ -34,7 +34,7 @@ struct CameraFigures {
 };
 
 /// Whether a processed frame missed its deadline.
-bool is_late(const FrameResult& frame, const RunResult& run);
+bool is_late(const soc::FrameTiming& frame, const RunSubject& run);
 
 /// The least of the values that at least `share` of them do not exceed (nearest rank).
 /// @param sorted  not empty

@@ -22,7 +22,7 @@ constexpr std::array kFigureRows{
     FigureRow{"frame.time.p99", "ns", "frame time p99", "frame time, 99 %", "ms", 1e-6},
     FigureRow{"frame.time.worst", "ns", "frame time worst", "frame time, worst", "ms", 1e-6},
     FigureRow{"frame.sustainable_rate", "1/s", "sustainable rate", "sustainable rate", "frames/s",
-              1, "frames that the chip can process, by their mean time", sustainable_rate},
+              1, true, "frames that the chip can process, by their mean time", sustainable_rate},
     FigureRow{"frame.missed_share", "1", "missed", "frames that missed", "%", 100},
     FigureRow{"frame.latency.mean", "ns", "frame latency mean"},
     FigureRow{"frame.latency.p50", "ns", "frame latency p50"},

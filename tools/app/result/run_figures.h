@@ -34,6 +34,7 @@ struct FigureRow {
   std::string_view title = {};       ///< where runs are compared; empty: nowhere
   std::string_view title_unit = {};  ///< there
   double scale = 1;                  ///< to that unit
+  bool more_is_better = false;
   // Of a figure that is computed nowhere else; it stands in summaries and on pages by its title.
   std::string_view meaning = {};
   /// Absent if the run has none.

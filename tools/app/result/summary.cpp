@@ -300,7 +300,7 @@ double CameraFigures::share_of(std::int64_t frames) const {
   return arrived > 0 ? static_cast<double>(frames) / static_cast<double>(arrived) : 0;
 }
 
-bool is_late(const FrameResult& frame, const RunResult& run) {
+bool is_late(const soc::FrameTiming& frame, const RunSubject& run) {
   return frame.end_ns - frame.arrival_ns > run.frame_period_ns;
 }
 

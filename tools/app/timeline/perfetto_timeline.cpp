@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy_summary.h"
 #include "tools/app/timeline/core_slices.h"
 #include "tools/app/timeline/joined_steps.h"
@@ -42,8 +43,7 @@ class PerfettoTimeline::Writer {
       : chip_(chip),
         options_(options),
         sink_(std::move(sink)),
-        collector_(chip, options.cores, options.range),
-        energy_(sim::knows_energy(chip)) {
+        collector_(chip, options.cores, options.range) {
     RunResult nothing;
     nothing.chip = chip;
     nothing.cores = options.cores;
@@ -59,9 +59,6 @@ class PerfettoTimeline::Writer {
  private:
   const TimelineEvents& events() const { return collector_.events(); }
   std::int64_t ns(sim::Time time) const { return nanoseconds(events().timebase, time); }
-  bool is_late(const soc::FrameTiming& times) const {
-    return times.end_ns - times.arrival_ns > subject_.frame_period_ns;
-  }
   void add_tracks();
   void add_camera(const RunResult& run);
   void add_arrival(int frame, std::int64_t arrival_ns, bool dropped, bool late);
@@ -77,7 +74,6 @@ class PerfettoTimeline::Writer {
   Options options_;
   outputs::Sink sink_;
   TimelineCollector collector_;  ///< of what is not written yet
-  bool energy_;                  ///< is known
   RunSubject subject_;
   Bytes camera_l2_;
   ClusterTracks cluster_;
@@ -87,7 +83,8 @@ class PerfettoTimeline::Writer {
   std::uint64_t stage_power_ = 0;
   std::uint64_t controller_power_ = 0;
   TrackEventWriter writer_;
-  std::optional<sim::Estimate<Watts>> idle_power_;  ///< of the cluster without work
+  /// Of the chip while the cluster has no work; absent if its energy is not known.
+  std::optional<sim::Estimate<Watts>> idle_power_;
   /// Of the optimisation that has begun and has not ended.
   struct Open {
     std::int64_t end_ns = 0;  ///< of its last iteration so far
@@ -120,7 +117,7 @@ void PerfettoTimeline::Writer::add_tracks() {
   controller_ = add("controller", number++);
   l1_ = add_counter("L1, peak of the stage", CounterUnit::Bytes);
   l2_ = add_counter("L2, peak of the stage", CounterUnit::Bytes);
-  if (!energy_) return;
+  if (!idle_power_) return;
   stage_power_ = add_counter("power without controller", CounterUnit::Milliwatts);
   controller_power_ = add_counter("power of the controller", CounterUnit::Milliwatts);
 }
@@ -146,7 +143,7 @@ void PerfettoTimeline::Writer::add_camera(const RunResult& run) {
     const bool dropped = delivery != nullptr && delivery->dropped;
     add_arrival(delivery != nullptr ? delivery->frame : frame->index,
                 delivery != nullptr ? delivery->arrival_ns : frame->arrival_ns, dropped,
-                !dropped && is_late(*frame));
+                !dropped && is_late(*frame, subject_));
     if (!dropped) ++frame;
     flush();
   }
@@ -174,7 +171,7 @@ void PerfettoTimeline::Writer::add_slices(const FrameEvents& frame, Cycles short
 void PerfettoTimeline::Writer::add_front_end_slices(const FrameEvents& frame) {
   const FrameResult& result = frame.result;
   const std::string name = fmt::format("frame {}", frame.frame);
-  const bool late = is_late(result);
+  const bool late = is_late(result, subject_);
   EventText text{name,
                  true,
                  {{"frame", std::int64_t{frame.frame}},
@@ -246,7 +243,7 @@ void PerfettoTimeline::Writer::end_optimisation() {
   if (!open_) return;
   writer_.end(controller_, open_->end_ns);
   writer_.counter(l2_, open_->end_ns, open_->resting.count());
-  if (energy_) writer_.counter(controller_power_, open_->end_ns, 0.0);
+  if (idle_power_) writer_.counter(controller_power_, open_->end_ns, 0.0);
   open_.reset();
 }
 

@@ -24,6 +24,7 @@ class PerfettoTimeline : public RunObserver {
     std::optional<traces::FrameRange> range{};   ///< frames by their numbers in the run; else all
     std::size_t most_bytes = kMostBytesOfFrame;  ///< 0: all steps that follow each other are joined
   };
+  /// @param chip  outlives the timeline
   PerfettoTimeline(const sim::ChipConfig& chip, const Options& options, outputs::Sink sink);
   ~PerfettoTimeline() override;
 

@@ -26,7 +26,7 @@ std::string shown(const SweepOutcome& outcome, std::size_t k) {
 }
 
 /// "frame ms".
-std::string title_of(const Objective& objective) {
+std::string column_title(const Objective& objective) {
   return fmt::format("{} {}", objective.title, objective.shown_unit);
 }
 
@@ -78,7 +78,7 @@ Front front_of(const SweepStore& store) {
     if (values.size() > 1)
       front.objectives.push_back(k);
     else if (!values.empty() && *values.begin() != "-")
-      front.common.push_back(fmt::format("{} {}", title_of(kObjectives[k]), *values.begin()));
+      front.common.push_back(fmt::format("{} {}", column_title(kObjectives[k]), *values.begin()));
   }
   return front;
 }
@@ -89,7 +89,7 @@ Table front_table(const SweepStore& store, const Front& front, std::size_t most)
   for (const std::string& title : front.titles) heads.push_back({.title = title});
   // Where the width is short, the last objectives go first, and what was set stays.
   for (const std::size_t k : front.objectives)
-    heads.push_back({.title = title_of(kObjectives[k]), .rank = static_cast<int>(k) + 1});
+    heads.push_back({.title = column_title(kObjectives[k]), .rank = static_cast<int>(k) + 1});
   Table table(heads);
   for (std::size_t i = 0; i < std::min(front.points.size(), most); ++i) {
     const SweepOutcome& outcome = front.points[i];

@@ -144,11 +144,17 @@ Json sweep_page(SweepStore& store, const std::optional<SweepCheck>& check) {
     page.columns.push_back(
         {.title = o.title, .key = o.figure, .unit = o.shown_unit, .scale = o.scale});
   for (const FigureRow& row : figure_rows())
-    if (!is_objective(row.statistic) && !row.title.empty())
+    if (!is_objective(row.statistic) && !row.phrase.empty() && !row.title.empty())
       page.columns.push_back({.title = std::string(row.title),
                               .key = std::string(row.statistic),
                               .unit = std::string(row.title_unit),
-                              .scale = row.scale});
+                              .scale = row.scale,
+                              .more_is_better = row.more_is_better});
+  page.columns.push_back({.title = "completion",
+                          .key = "accuracy.completion",
+                          .unit = "%",
+                          .scale = 100,
+                          .more_is_better = true});
   page.columns.push_back({.title = "failure", .key = "failure"});
   if (!parameters.empty() && parameters.size() <= 2) {
     page.curves = {
