@@ -100,8 +100,7 @@ bool NextFrontEnd<P>::starts_at_rest() const {
 
 /// An even flight looks like rest to the IMU: before a window begins at rest, the image is compared
 /// with the keyframe, which is the frame before, or less than a second old. From where it moves,
-/// the IMU is not believed. Images with few features, whose matches are wrong as often as right,
-/// contradict nothing.
+/// the IMU is not believed.
 template <class P>
 void NextFrontEnd<P>::look_for_motion(TrackedFrame<P>& frame) {
   using F = typename P::F32;
@@ -111,7 +110,6 @@ void NextFrontEnd<P>::look_for_motion(TrackedFrame<P>& frame) {
   };
   if (!inertial_.rest() && !inertial_.rest_is_rejected()) rest_ = {};
   if (!starts_at_rest() || state_.time_since_keyframe > limits.image_time) return;
-  if (frame.features.list.count < state_.profile.recovery.min_features) return;
   const work::Arena::Frame memory(state_.machine.local());
   match_last_keyframe(frame);
   align_features<P>(state_, frame, std::nullopt);
