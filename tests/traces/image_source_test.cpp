@@ -112,6 +112,28 @@ TEST(ImageSource, RecordedFrameDecimated) {
       ASSERT_EQ(image.pixels[y * 160 + x], full.at<uchar>(1 + 4 * y, 57 + 4 * x));
 }
 
+TEST(ImageSource, SharesPreparedPicturesWithSourcesOfTheSameMaking) {
+  const AslFolder folder;
+  const Dataset data = open_asl(folder.root());
+  const GrayImage alone = ImageSource(data, {7, 5}).read(1);
+  const auto memory = std::make_shared<PictureMemory>();
+  EXPECT_EQ(ImageSource(data, {7, 5}, memory).read(1).pixels, alone.pixels);
+  fs::remove(folder.image(1));
+  EXPECT_EQ(ImageSource(data, {7, 5}, memory).read(1).pixels, alone.pixels);
+  EXPECT_THROW(ImageSource(data, {8, 6}, memory).read(1), InputError);
+  Dataset other = data;
+  other.camera.fx += 1;
+  EXPECT_THROW(ImageSource(other, {7, 5}, memory).read(1), InputError);
+}
+
+TEST(PictureMemory, KeepsNoMoreThanItMay) {
+  PictureMemory memory(10);
+  memory.keep("a", std::vector<std::uint8_t>(6, 1));
+  memory.keep("b", std::vector<std::uint8_t>(6, 2));
+  EXPECT_EQ(memory.find("a"), std::vector<std::uint8_t>(6, 1));
+  EXPECT_EQ(memory.find("b"), std::nullopt);
+}
+
 TEST(ImageSource, ThreadsReadTheSame) {
   const AslFolder folder;
   const ImageSource source(open_asl(folder.root()), {16, 12});

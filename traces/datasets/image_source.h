@@ -4,12 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "traces/datasets/camera_model.h"
 #include "traces/datasets/dataset.h"
 #include "traces/datasets/image_file.h"
 #include "traces/datasets/image_preparation.h"
+#include "traces/datasets/picture_memory.h"
 
 namespace leviosim::traces {
 
@@ -25,8 +28,9 @@ struct GrayImage {
 /// function of the frame's index and may be called from several threads.
 class ImageSource {
  public:
-  /// Throws InputError if the size does not fit.
-  ImageSource(const Dataset& data, ImageSize size);
+  /// @param memory  of prepared pictures, shared with other sources; none: each is read again
+  /// @throws InputError if the size does not fit
+  ImageSource(const Dataset& data, ImageSize size, std::shared_ptr<PictureMemory> memory = {});
 
   std::size_t size() const { return frames_.size(); }
   const PinholeIntrinsics& intrinsics() const { return preparation_.intrinsics(); }
@@ -38,12 +42,16 @@ class ImageSource {
   std::vector<std::uint8_t> read_full(std::size_t i) const;
 
  private:
+  std::vector<std::uint8_t> prepared(std::size_t i) const;
+
   std::filesystem::path frames_csv_;
   std::vector<FrameRef> frames_;
   ImageSize full_size_;
   PixelMending mending_;
   Disturbance disturbance_;
   ImagePreparation preparation_;
+  std::shared_ptr<PictureMemory> memory_;
+  std::string preparation_name_;  ///< of what is made of every picture
 };
 
 }  // namespace leviosim::traces

@@ -60,7 +60,7 @@ Feed::Feed(const RunRequest& request)
       truth_(traces::to_trajectory(std::exchange(data_.ground_truth, {}))),
       frames_(camera_frames(request, data_)),
       rate_hz_(request.camera && request.camera->fps ? *request.camera->fps : data_.camera.rate_hz),
-      images_(data_, request.image_size),
+      images_(data_, request.image_size, request.pictures),
       rig_(make_rig(data_.camera, images_.intrinsics(), rate_hz_)) {}
 
 /// Read while the frame before was worked on, if no frame was dropped since that was not dropped

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "traces/datasets/disturbance.h"
 #include "traces/datasets/frame_range.h"
 #include "traces/datasets/image_file.h"
+#include "traces/datasets/picture_memory.h"
 #include "workload/vio/parameters.h"
 
 namespace leviosim::tools {
@@ -49,8 +51,9 @@ struct RunRequest {
   /// Whether the trajectory is compared with the truth. A trajectory that diverged is refused.
   bool evaluate = true;
   TimeBandsOf time_bands = TimeBandsOf::nothing;
-  bool on_one_core = true;             ///< whether jobs are also timed on one core
-  RunObserver* observer = nullptr;     ///< sees every job; unused if native
+  bool on_one_core = true;                          ///< whether jobs are also timed on one core
+  RunObserver* observer = nullptr;                  ///< sees every job; unused if native
+  std::shared_ptr<traces::PictureMemory> pictures;  ///< of a study, whose runs share frames
   WorkRecording* recording = nullptr;  ///< gets every job, for a trace; unused if native
 };
 

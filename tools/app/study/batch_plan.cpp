@@ -129,6 +129,7 @@ Point make_run(const BatchPlan& plan, const Sequence& sequence, const std::strin
   run.request.native = true;
   run.request.seed = seed;
   run.request.workload = plan.workload;
+  run.request.pictures = plan.pictures;
   return run;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,7 @@ struct BatchPlan {
   std::vector<vio::Assignment> workload;  ///< of every run
   std::optional<traces::FrameRange> frames;
   Measure measure;
+  std::shared_ptr<traces::PictureMemory> pictures = std::make_shared<traces::PictureMemory>();
 };
 
 /// What --seed, --profile and -p of native runs were given. @throws InputError naming the option

@@ -73,7 +73,9 @@ class FeasibilityStudy {
  public:
   /// @param request  what to compute; its platform and cores are not used
   FeasibilityStudy(RunRequest request, ProgressCallback progress)
-      : request_(std::move(request)), progress_(std::move(progress)) {}
+      : request_(std::move(request)), progress_(std::move(progress)) {
+    request_.pictures = std::make_shared<traces::PictureMemory>();
+  }
 
   /// @throws InputError for more cores than the platform serves
   Feasibility on(const FeasibilityPoint& point);

@@ -221,6 +221,7 @@ std::size_t row_of(const Benchmark& benchmark, std::size_t variant, std::size_t 
 
 std::vector<Point> benchmark_runs(const Benchmark& benchmark) {
   std::vector<Point> runs;
+  const auto pictures = std::make_shared<traces::PictureMemory>();
   for (std::size_t v = 0; v < benchmark.plan.variants.size(); ++v)
     for (std::size_t p = 0; p < benchmark.pieces.size(); ++p)
       for (const std::uint32_t seed : benchmark.plan.seeds) {
@@ -236,6 +237,7 @@ std::vector<Point> benchmark_runs(const Benchmark& benchmark) {
         if (benchmark.motions[piece.motion].recorded) {
           run.request.data = benchmark.motions[piece.motion].sequence.folder;
           run.request.frames = piece.frames;
+          run.request.pictures = pictures;
         }
         run.sequence = &benchmark.motions[piece.motion].sequence;
         run.row = row_of(benchmark, v, p);

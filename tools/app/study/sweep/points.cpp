@@ -96,6 +96,7 @@ class Resolver {
     RunRequest& request = point_.request;
     const SweepInputs::Data& data = inputs_.data(text("data"), text("frames"), place_);
     request.data = data.folder;
+    request.pictures = inputs_.pictures();
     if (has("frames")) request.frames = traces::parse_frame_range(text("frames"));
     request.image_size = parse_size(text("size", "160x120"));
     traces::make_decimation(data.camera, request.image_size);

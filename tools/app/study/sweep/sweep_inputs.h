@@ -10,6 +10,7 @@
 #include "platform_models/loader/platform_file.h"
 #include "platform_models/loader/value.h"
 #include "tools/app/cli/progress_line.h"
+#include "traces/datasets/picture_memory.h"
 #include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
@@ -43,6 +44,9 @@ class SweepInputs {
   const Data& data(const std::string& name, const std::string& frames,
                    const platform::Place& place);
 
+  /// Of all runs.
+  const std::shared_ptr<traces::PictureMemory>& pictures() const { return pictures_; }
+
  private:
   std::filesystem::path beside(const std::string& name) const;
 
@@ -52,6 +56,7 @@ class SweepInputs {
   std::map<std::string, platform::PlatformFile> platforms_;
   std::map<std::string, Trace> traces_;
   std::map<std::pair<std::string, std::string>, Data> data_;
+  std::shared_ptr<traces::PictureMemory> pictures_ = std::make_shared<traces::PictureMemory>();
 };
 
 }  // namespace leviosim::tools

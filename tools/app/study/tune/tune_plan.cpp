@@ -239,6 +239,7 @@ TunePlan make_tune_plan(const TuneOptions& options, ProgressLine::Style progress
   plan.ate_m = parse_positive("--ate", options.ate);
   if (!options.fps.empty()) plan.fps = parse_rates(options.fps);
   plan.request.data = data_folder(options, progress);
+  plan.request.pictures = std::make_shared<traces::PictureMemory>();
   plan.recorded_hz = checked_recorded_rate(plan.request, plan.fps);
   if (plan.fps.empty()) plan.fps = {plan.recorded_hz};
   plan.sequence = open_sequence({options.data, plan.request.data}, plan.request.frames,
