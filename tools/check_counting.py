@@ -76,6 +76,7 @@ RULES = {
          "iterate over P::range"),
 }
 
+NAME = pathlib.Path(sys.argv[0]).name  # leviosim-check-counting, where it is installed
 PLACE = re.compile(r'^(.*?):(\d+):\d+: note: "at" binds here$')
 MARK = "uncounted:"
 
@@ -151,18 +152,18 @@ def check(words):
     left = sorted(place for place in found if not is_marked(place[0], place[1]))
     for file, line, rule in left:
         print(f"{file}:{line}: {rule}; {RULES[rule][1]}")
-    print(f"check_counting.py: {len(words)} file{'s' if len(words) > 1 else ''}, {len(left)} found")
+    print(f"{NAME}: {len(words)} file{'s' if len(words) > 1 else ''}, {len(left)} found")
     return 1 if left else 0
 
 
 def main():
     if sys.argv[1:2] in (["--help"], ["-h"]):
-        print(__doc__)
+        print(__doc__.replace("check_counting.py", NAME))
         return 0
     try:
         return check(sys.argv[1:])
     except Refused as refusal:
-        print(f"check_counting.py: {refusal}", file=sys.stderr)
+        print(f"{NAME}: {refusal}", file=sys.stderr)
         return 2
 
 
