@@ -1,10 +1,19 @@
 # What `cmake --install` leaves: the program; the library, which is one archive of all rooms, with their
-# headers; and what find_package(leviosim) reads, with the targets leviosim::leviosim and
-# leviosim::program. Components: program, library, and python with the preset python. `cpack -G DEB` makes a
+# headers; what find_package(leviosim) reads, with the targets leviosim::leviosim and leviosim::program;
+# and tools. Components: program, library, and python with the preset python. `cpack -G DEB` makes a
 # Debian package of each.
 #   leviosim_install_library(ROOM_LIBRARY...)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
+
+# Before what is not built yet is missed: what to build.
+function(leviosim_install_needs target component)
+  install(CODE "
+    if(NOT EXISTS \"$<TARGET_FILE:${target}>\")
+      message(FATAL_ERROR \"${target} is not built; what is installed is built by: \"
+        \"cmake --build ${CMAKE_BINARY_DIR} --target ${ARGN}\")
+    endif()" COMPONENT ${component})
+endfunction()
 
 # What the program says of its own command line, when it is installed.
 function(leviosim_install_manual format folder name)
@@ -36,7 +45,11 @@ function(leviosim_install_library)
     PNG::PNG ZLIB::ZLIB zstd::libzstd_shared yaml jpeg opencv_imgproc opencv_core)
   set_target_properties(leviosim PROPERTIES EXPORT_NAME program)
 
+  leviosim_install_needs(leviosim program leviosim)
+  leviosim_install_needs(leviosim_library library leviosim leviosim_library)
   install(TARGETS leviosim EXPORT leviosim RUNTIME COMPONENT program)
+  install(PROGRAMS tools/rosbag_to_asl.py RENAME leviosim-bag-to-asl COMPONENT program
+          DESTINATION ${CMAKE_INSTALL_BINDIR})
   leviosim_install_manual(man ${CMAKE_INSTALL_MANDIR}/man1 leviosim.1)
   leviosim_install_manual(bash ${CMAKE_INSTALL_DATADIR}/bash-completion/completions leviosim)
   leviosim_install_manual(zsh ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions _leviosim)
@@ -91,6 +104,7 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME leviosim)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "python3, lz4, zstd") # leviosim-bag-to-asl
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
     "Runs visual-inertial odometry on models of ultra-low-power multicore chips")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libleviosim-dev)

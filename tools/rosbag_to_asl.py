@@ -22,6 +22,7 @@ import zlib
 
 IMAGE, COMPRESSED, IMU = ("sensor_msgs/msg/" + name for name in ("Image", "CompressedImage", "Imu"))
 MAGIC = b"\x89MCAP0\r\n"
+NAME = pathlib.Path(sys.argv[0]).name  # leviosim-bag-to-asl, where it is installed
 MOST_MESSAGE = 256 << 20  # bytes of a message, and of a chunk once it is decompressed
 MOST_CHUNKS = 4 << 30  # bytes of all chunks
 MOST_PIXELS = 1 << 24  # as leviosim reads them
@@ -305,7 +306,7 @@ def shown(text):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__.replace("rosbag_to_asl.py", NAME), formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bag", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path, nargs="?")
     parser.add_argument("--list", action="store_true", help="topics, types, numbers of messages")
@@ -322,7 +323,7 @@ def main():
     except KeyboardInterrupt:
         sys.exit(130)
     except (Refused, OSError, sqlite3.Error, struct.error, ValueError, OverflowError, MemoryError) as error:
-        print(f"rosbag_to_asl.py: {' '.join(shown(str(error) or 'too little memory').split())}", file=sys.stderr)
+        print(f"{NAME}: {' '.join(shown(str(error) or 'too little memory').split())}", file=sys.stderr)
         sys.exit(2)
 
 

@@ -24,6 +24,11 @@ class Chip {
   const Timebase& timebase() const { return timebase_; }
   Cluster& cluster() { return cluster_; }
   Controller& controller() { return controller_; }
+  /// Whether timings hold the steps of each stage (timing.h).
+  void keep_steps(bool keep) {
+    cluster_.keep_steps(keep);
+    controller_.keep_steps(keep);
+  }
   /// Whether accounts of jobs are by fork and kind of operation, too.
   void keep_forks(bool keep) {
     cluster_.keep_forks(keep);

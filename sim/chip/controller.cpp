@@ -22,7 +22,7 @@ Task<JobTiming> Controller::run(const work::Job& job) {
 
 JobTiming Controller::time(const work::Job& job, Time begin) const {
   JobTiming timing{begin, begin, {}};
-  ExternalTransfers transfers;
+  ExternalTransfers transfers{.begin = begin, .done = {}};
   for (const work::StageRun& stage : job.stages) {
     StageTiming s{stage.stage, timing.end, {}, {}, {}};
     book(s, stage, transfers);
@@ -39,7 +39,7 @@ void Controller::book(StageTiming& stage, const work::StageRun& run,
   ForkAccount* const fork = keep_forks_ ? &stage.account.fork(kSerialFork) : nullptr;
   const Demand demand = demand_of_stage(run, fork == nullptr ? nullptr : &fork->operations);
   const double begin = transfers.now;
-  const double transfer = wait_for_transfers(run, demand.cycles(), transfers);
+  const double transfer = wait_for_transfers(run, demand.cycles(), stage, transfers);
   stage.cycles = counted_cycles(std::ceil(demand.cycles() + transfer));
   transfers.now = begin + static_cast<double>(stage.cycles.count());
   MechanismCycles worked;
@@ -87,40 +87,55 @@ work::Counts work_in(const work::Step& step) {
 
 /// Cycles beside those of the work, which is `work` in all. Only external memory is far from a
 /// controller.
-double Controller::wait_for_transfers(const work::StageRun& stage, double work,
+double Controller::wait_for_transfers(const work::StageRun& run, double work, StageTiming& stage,
                                       ExternalTransfers& transfers) const {
-  const ExternalMemoryConfig& memory = config_.external;
-  const bool external = std::any_of(stage.steps.begin(), stage.steps.end(), moves_external);
+  const bool external = std::any_of(run.steps.begin(), run.steps.end(), moves_external);
   if (!external && transfers.done.empty()) return 0;
-  if (external && memory.bytes_per_second <= 0)
+  if (external && config_.external.bytes_per_second <= 0)
     throw InputError(fmt::format(
         "{}: the work moves data from or to external memory, which the platform does not have",
         stage.stage));
   std::vector<double> worked;  // by step; caches make it a little more than its parts
-  for (const work::Step& step : stage.steps)
+  for (const work::Step& step : run.steps)
     worked.push_back(demand_of(work_in(step), costs_, code_).cycles());
   const double sum = std::accumulate(worked.begin(), worked.end(), 0.0);
-  const double clock = static_cast<double>(config_.clock.count());
   double waited = 0;
-  for (std::size_t i = 0; i < stage.steps.size(); ++i) {
+  for (std::size_t i = 0; i < run.steps.size(); ++i) {
     if (sum > 0) transfers.now += worked[i] * work / sum;
-    if (const auto* wait = std::get_if<work::TransferWait>(&stage.steps[i]))
+    if (const auto* wait = std::get_if<work::TransferWait>(&run.steps[i]))
       wait_until(transfers.done.at(static_cast<std::size_t>(wait->number)), waited, transfers.now);
-    const auto* transfer = std::get_if<work::Transfer>(&stage.steps[i]);
+    const auto* transfer = std::get_if<work::Transfer>(&run.steps[i]);
     if (transfer == nullptr) continue;
-    double done = transfers.now;
-    if (moves_external(stage.steps[i])) {
-      const Bytes moved = std::max(transfer->bytes, memory.burst);
-      wait_until(transfers.now + memory.latency_seconds * clock, waited, transfers.now);
-      done = transfers.free = std::max(transfers.now, transfers.free) +
-                              static_cast<double>(moved.count()) / memory.bytes_per_second * clock;
-    }
+    const double done = moves_external(run.steps[i])
+                            ? pass(run.steps[i], stage, waited, transfers)
+                            : transfers.now;
     if (transfer->background)
       transfers.done.push_back(done);
     else
       wait_until(done, waited, transfers.now);
   }
   return waited;
+}
+
+double Controller::pass(const work::Step& step, StageTiming& stage, double& waited,
+                        ExternalTransfers& transfers) const {
+  const ExternalMemoryConfig& memory = config_.external;
+  const auto clock = static_cast<double>(config_.clock.count());
+  const Bytes moved = std::max(std::get<work::Transfer>(step).bytes, memory.burst);
+  const double programmed = transfers.now;
+  wait_until(programmed + memory.latency_seconds * clock, waited, transfers.now);
+  const double first = std::max(transfers.now, transfers.free);
+  transfers.free = first + static_cast<double>(moved.count()) / memory.bytes_per_second * clock;
+  if (keep_steps_) {
+    const auto at = [&](double cycle) {
+      return transfers.begin + clock_.duration(Cycles(static_cast<std::int64_t>(cycle)));
+    };
+    stage.steps.push_back({.step = &step,
+                           .begin = at(programmed),
+                           .end = at(transfers.now),
+                           .data = {at(first), at(transfers.free)}});
+  }
+  return transfers.free;
 }
 
 }  // namespace leviosim::sim

@@ -31,7 +31,8 @@ class Controller {
   /// co_await: the same from now on, until it is done.
   Task<JobTiming> run(const work::Job& job);
 
-  /// As of Cluster.
+  /// As of Cluster; of steps, those that move data from or to external memory.
+  void keep_steps(bool keep) { keep_steps_ = keep; }
   void keep_forks(bool keep) { keep_forks_ = keep; }
 
   const ClockDomain& clock() const { return clock_; }
@@ -39,6 +40,7 @@ class Controller {
  private:
   /// What is under way within a job, in cycles since its begin.
   struct ExternalTransfers {
+    Time begin;  ///< of the job
     double now = 0;
     double free = 0;           ///< from when on the next data may pass
     std::vector<double> done;  ///< by number of the background transfer
@@ -46,14 +48,18 @@ class Controller {
 
   Demand demand_of_stage(const work::StageRun& stage, OperationAccounts* by_operation) const;
   void book(StageTiming& stage, const work::StageRun& run, ExternalTransfers& transfers) const;
-  double wait_for_transfers(const work::StageRun& stage, double work,
+  double wait_for_transfers(const work::StageRun& run, double work, StageTiming& stage,
                             ExternalTransfers& transfers) const;
+  /// When the data of a transfer have passed that is programmed now.
+  double pass(const work::Step& step, StageTiming& stage, double& waited,
+              ExternalTransfers& transfers) const;
 
   Kernel& kernel_;
   const ClockDomain& clock_;
   ControllerConfig config_;
   CoreCosts costs_;
   CodeFetcher code_;
+  bool keep_steps_ = false;
   bool keep_forks_ = false;
 };
 

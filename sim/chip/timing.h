@@ -1,6 +1,6 @@
 // What timing a job on a chip yields: for every stage its time, and the account of where the
-// core-cycles of the team went. Who asks for it (Cluster::keep_steps) also gets every step with
-// what each core did in it.
+// core-cycles of the team went. Who asks for it (Chip::keep_steps) also gets every step with what
+// each core did in it.
 #pragma once
 
 #include <string_view>
@@ -44,7 +44,7 @@ struct StageTiming {
   Time end;
   Cycles cycles;
   CycleAccount account;
-  std::vector<StepTiming> steps{};  ///< of a cluster that keeps them
+  std::vector<StepTiming> steps{};  ///< if they are kept; a controller's: transfers that take time
 };
 
 struct JobTiming {

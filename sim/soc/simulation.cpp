@@ -17,7 +17,7 @@ Simulation::Simulation(const Setup& setup, JobSource& source, Observer& observer
       camera_frames_(chip_.kernel(), "camera frames", static_cast<std::size_t>(source.frames())),
       snapshot_taken_(chip_.kernel(), "snapshot"),
       account_(source.empty_stages(), setup.chip) {
-  chip_.cluster().keep_steps(observer.wants_steps());
+  chip_.keep_steps(observer.wants_steps());
   chip_.keep_forks(true);
   // A flight that is too long for the chip's timebase is refused before its first frame.
   if (source.frames() > 0)

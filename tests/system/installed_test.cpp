@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <array>
 #include <cstdlib>
 #include <vector>
 
@@ -94,8 +95,14 @@ TEST_F(Installed, AProjectOfItsOwnHasEveryCommand) {
   EXPECT_NE(log().find("workload.row_step"), std::string::npos);
   EXPECT_EQ(tests::lines_of(read_text(folder_ / "outside/mychip.yaml")).size(), 5u);
   EXPECT_NE(read_text(folder_ / "recorded/stages.csv").find("exposure"), std::string::npos);
-  for (const char* program : {"leviosim-measure", "leviosim-check-counting"})
-    EXPECT_EQ(sh(std::string("leviosim/bin/") + program + " --help"), 0) << log();
+  for (const std::string program :
+       {"leviosim-measure", "leviosim-check-counting", "leviosim-bag-to-asl"}) {
+    EXPECT_EQ(sh("leviosim/bin/" + program + " --help"), 0) << log();
+    EXPECT_NE(log().find("usage: " + program + " "), std::string::npos) << log();
+    EXPECT_EQ(log().find(".py"), std::string::npos) << log();
+    EXPECT_EQ(sh("leviosim/bin/" + program + " none none --list"), 2);
+    EXPECT_EQ(log().rfind(program + ": ", 0), 0u) << log();
+  }
   // A recorded run needs no program of its own to be timed.
   EXPECT_EQ(sh("leviosim/bin/leviosim replay recorded --out by-leviosim && cmp recorded/stages.csv "
                "by-leviosim/stages.csv"),
@@ -114,6 +121,29 @@ TEST_F(Installed, AProjectOfItsOwnHasEveryCommand) {
   ASSERT_EQ(measured, 0) << log();
   EXPECT_EQ(read_text(folder_ / "outside/exposure_code.h"), code);
   EXPECT_LT(unmeasured_in("measured"), 0.01);
+}
+
+/// The build's own scripts, as they are in a folder in which nothing was built.
+TEST_F(Installed, WhatIsNotBuiltIsNamedWithWhatBuildsIt) {
+  const std::string script =
+      read_text(tests::build_folder() / "cmake_install.cmake");
+  for (const auto& [component, file, targets] :
+       {std::array{"program", "/leviosim\"", "leviosim"},
+        std::array{"library", "/library/libleviosim.a\"", "leviosim leviosim_library"}}) {
+    std::string unbuilt = script;
+    const std::size_t at = unbuilt.find(file, unbuilt.find("NOT EXISTS"));
+    ASSERT_NE(at, std::string::npos) << file;
+    unbuilt.insert(at + std::string_view(file).size() - 1, "-that-is-not-there");
+    tests::write_text(folder_ / "install.cmake", unbuilt);
+    EXPECT_EQ(sh(std::string("cmake -DCMAKE_INSTALL_PREFIX=into -DCMAKE_INSTALL_COMPONENT=") +
+                 component + " -P install.cmake"),
+              1);
+    EXPECT_NE(log().find("is not built; what is installed is built by: cmake --build"),
+              std::string::npos)
+        << log();
+    EXPECT_NE(log().find(std::string("--target ") + targets), std::string::npos) << log();
+    EXPECT_FALSE(has("into"));
+  }
 }
 
 TEST_F(Installed, ThePagesForPeopleAndShellsNameEveryCommandAndOption) {

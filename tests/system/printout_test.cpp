@@ -81,6 +81,25 @@ TEST_F(PrintoutTest, ARunFitsAScreenOf24LinesOf80Columns) {
   EXPECT_EQ(lines.back(), "next: leviosim whatif " + path("run"));
 }
 
+/// What a stranger tries in five minutes, beside the first screen and the demonstration
+/// (command_line_test.cpp, demo_command_test.cpp).
+TEST_F(PrintoutTest, AnswersComeFirstAndFitAScreen) {
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"whatif", path("run")}, {"whatif", path("run"), "cluster.l1.size=48,64,96KiB"},
+           {"why", path("run")}}) {
+    std::vector<std::string> quiet = words;
+    quiet.push_back("--quiet");
+    const ProgramResult result = testing::run_on_screen(folder_, std::move(quiet));
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_TRUE(result.out.starts_with("in short: ")) << result.out;
+    const std::vector<std::string> lines = lines_of(result.out);
+    EXPECT_LE(lines.size(), 24u) << result.out;
+    for (const std::string& line : lines)
+      EXPECT_TRUE(line.find(folder_.string()) != std::string::npos || display_width(line) <= 80)
+          << line;
+  }
+}
+
 TEST_F(PrintoutTest, WhatToTryNextIsTypedAsItStands) {
   ::setenv("L", leviosim::tests::program_path().c_str(), 1);
   ::setenv("IN", folder_.c_str(), 1);

@@ -84,6 +84,25 @@ class SweepCommand : public ::testing::Test {
 fs::path SweepCommand::folder_;
 std::string SweepCommand::whole_out_;
 
+/// By its first points, whoever looks at stderr; of nothing that takes no time.
+TEST_F(SweepCommand, SaysHowLongItTakesAsItBegins) {
+  outputs::write_file_atomically(folder_ / "many.yaml",
+                                 "base: { trace: recorded }\npoints:\n  - grid:\n"
+                                 "      platform.cluster.fpu.units: [1, 2, 4, 8]\n"
+                                 "      platform.cluster.dma.bytes_per_cycle: [2, 4, 8]\n");
+  const auto swept = [&](const std::string& out) {
+    return run_program(folder_, {"sweep", path("many.yaml"), "--jobs", "2", "--cache",
+                                 path("cache-many"), "--out", path(out)});
+  };
+  const ProgramResult first = swept("many");
+  EXPECT_EQ(first.status, 0) << first.err;
+  EXPECT_TRUE(std::regex_search(
+      first.err, std::regex(R"(12 points, [0-9.e-]+ s each: about [0-9.e-]+ s on 2 cores\n)")))
+      << first.err;
+  EXPECT_EQ(swept("again").err.find("each: about"), std::string::npos);
+  EXPECT_EQ(sweep({"--out", path("few")}, "few").err, "");
+}
+
 TEST_F(SweepCommand, GivesTheFiguresOfReplaysAndRunsNothingTwice) {
   const std::string text = csv("whole");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 9);

@@ -202,6 +202,73 @@ TEST(Timeline, TransfersHaveTheirBytesAndDirections) {
   EXPECT_EQ(out, 4 * 3 * 123);
 }
 
+/// Iterations that fetch so many tiles of 640 bytes from external memory, and send one back.
+class ExternalSource : public MixedSource {
+ public:
+  explicit ExternalSource(int tiles) : MixedSource({.frames = 4, .iteration = 5'000}, 8, 1) {
+    work::StageRun stage{"optimiser", {}, {}};
+    for (int i = 0; i < tiles; ++i) {
+      stage.steps.emplace_back(
+          work::Transfer{work::Direction::ExternalToL2, Bytes(640), /*background=*/true});
+      stage.steps.emplace_back(work::Serial{segment(500)});
+      stage.steps.emplace_back(work::TransferWait{i});
+    }
+    stage.steps.emplace_back(work::Transfer{work::Direction::L2ToExternal, Bytes(64)});
+    iteration_.stages = {stage};
+  }
+  const work::Job& optimise() override { return iteration_; }
+
+ private:
+  work::Job iteration_;
+};
+
+/// What a chip whose external memory moves 64 MB/s, after 1 µs, shows of it.
+PerfettoTrace shown_external(int tiles, std::size_t most_bytes) {
+  ExternalSource source(tiles);
+  RunRequest request = testing::request_at(Hertz(370'000'000), {});
+  request.cores = 8;
+  request.platform.config.controller.external = {1e-6, 64e6, Bytes(0), Bytes(1 << 20)};
+  std::string bytes;
+  PerfettoTimeline timeline(request.platform.config, {.cores = 8, .most_bytes = most_bytes},
+                            [&](std::string_view piece) { bytes += piece; });
+  request.observer = &timeline;
+  timeline.finish(simulate_source(request, source, [](const Progress&) {}));
+  return PerfettoTrace(bytes);
+}
+
+TEST(Timeline, ExternalMemoryHasTracksOfItsOwn) {
+  for (const std::size_t most_bytes : {std::size_t{1} << 30, std::size_t{0}}) {
+    const PerfettoTrace trace = shown_external(12, most_bytes);
+    const std::vector<PerfettoEvent> in = trace.on("external memory to L2"),
+                                     out = trace.on("L2 to external memory");
+    double fetched = 0, sent = 0;
+    for (const PerfettoEvent& event : in) fetched += event.number("bytes");
+    for (const PerfettoEvent& event : out) sent += event.number("bytes");
+    ASSERT_GT(sent, 0);
+    EXPECT_EQ(fetched / sent, 120);
+    const auto iterations = static_cast<std::size_t>(sent / 64);
+    if (most_bytes == 0) {
+      EXPECT_EQ(in.size(), iterations);  // joined
+      continue;
+    }
+    ASSERT_EQ(in.size(), 12 * iterations);
+    EXPECT_EQ(in[0].name, "tile, external to L2");
+    EXPECT_EQ(out[0].name, "L2 to external");
+    EXPECT_EQ(in[0].end_ns - in[0].begin_ns, 10'000);
+    const PerfettoEvent& iteration = trace.on("controller").at(1);
+    EXPECT_NEAR(static_cast<double>(in[0].begin_ns - iteration.begin_ns), 1'000, 3);
+    EXPECT_LE(out[0].end_ns, iteration.end_ns);
+  }
+  EXPECT_ANY_THROW(shown(2).trace.on("external memory to L2"));  // of a chip without
+}
+
+TEST(Timeline, TilesAreNamedOnTheTrackOfTheDma) {
+  const Shown all = shown(2);
+  std::map<std::string, int> names;
+  for (const PerfettoEvent& event : all.trace.on("DMA, L2 to L1")) ++names[event.name];
+  EXPECT_EQ(names, (std::map<std::string, int>{{"L2 to L1", 4}, {"tile, L2 to L1", 4}}));
+}
+
 TEST(Timeline, JoinsShortStepsUntilAFrameFits) {
   const Shown fits = shown(5, 1 << 30);
   EXPECT_EQ(fits.trace.on("master")[1].name, "serial work");

@@ -124,6 +124,24 @@ TEST(MapVerdict, KnowsSinceWhenTheVehicleRests) {
   EXPECT_FALSE(figures_of(run).map.at_rest_since);
 }
 
+/// Such as one that measures the exposure of each frame.
+TEST(MapVerdict, IsNoneOfAWorkloadWithoutPoses) {
+  RunResult run = testing::example_run();
+  const auto has_map = [&] {
+    const Verdicts verdicts = figures_of(run).verdicts;
+    return std::any_of(verdicts.list.begin(), verdicts.list.end(),
+                       [](const RunVerdict& v) { return v.about == "map"; });
+  };
+  EXPECT_TRUE(has_map());
+  run.ate.reset();
+  for (traces::StampedPose& pose : run.trajectory)
+    pose.T_world_body = Eigen::Isometry3d::Identity();
+  EXPECT_FALSE(has_map());
+  const std::string text = run_summary("title", run, 80, 0) + report(run);
+  for (const char* word : {"trajectory:", "map good", "map not judged", "0.00 m\n"})
+    EXPECT_EQ(text.find(word), std::string::npos) << word << "\n" << text;
+}
+
 TEST(MapVerdict, AScaleThatIsOffEitherWay) {
   for (const double right : {0.81, 1.0, 1.24}) EXPECT_EQ(map_faults(with_scale(right)), Texts());
   EXPECT_EQ(map_faults(with_scale(1.26)), (Texts{"the scale is 1.26"}));

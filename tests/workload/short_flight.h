@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -250,6 +251,7 @@ struct Flown {
   traces::Trajectory trajectory;  ///< of the body
   std::vector<PoseSource> sources;
   std::vector<Health> health;
+  std::vector<std::array<int, 4>> facts;  ///< features, matches of both kinds, inliers
   double ate = 0;      ///< SE3-aligned [m]
   bool finite = true;  ///< all poses
   int map_restarts = 0;
@@ -306,6 +308,8 @@ inline Flown fly(const ShortFlight& flight, const Profile& profile, int cores = 
           .T_world_body = body_pose(earlier, flight.T_body_camera);
     flown.sources.push_back(report.source);
     flown.health.push_back(static_cast<Health>(report.health));
+    flown.facts.push_back(
+        {report.features, report.world_matches, report.frame_matches, report.inliers});
     flown.map_restarts += report.map_restarts;
   }
   flown.passages = cluster.passages();

@@ -123,7 +123,8 @@ std::string energy(const RunResult& run) {
 
 std::string error(const RunResult& run) {
   return run.ate
-             ? fmt::format("{:.2f} of {:.1f} m", run.ate->translation.rmse, run.ate->path_length_m)
+             ? fmt::format("{} of {:.1f} m", metres_text(run.ate->translation.rmse, 2),
+                           run.ate->path_length_m)
              : "–";
 }
 

@@ -259,6 +259,9 @@ std::string side_by_side(const std::vector<Evaluated>& all) {
   const auto fixed = [](auto of, int decimals) {
     return [=](E e) { return figure_text(of(e.accuracy.evaluation), decimals); };
   };
+  const auto length = [](auto of) {
+    return [=](E e) { return metres_text(of(e.accuracy.evaluation), 4); };
+  };
   const auto degrees = [](double traces::AttitudeErrors::*error) {
     return [error](E e) {
       const std::optional<traces::AttitudeErrors> found = attitude_errors(e.accuracy.evaluation);
@@ -267,9 +270,9 @@ std::string side_by_side(const std::vector<Evaluated>& all) {
   };
   Columns<Evaluated> table{
       {{"estimate", kLeft}, [&](E e) { return short_name(e, all); }},
-      {{"ATE m"}, fixed([](const Evaluation& e) { return e.translation.rmse; }, 4)},
-      {{"median"}, fixed([](const Evaluation& e) { return e.translation.median; }, 4)},
-      {{"worst"}, fixed([](const Evaluation& e) { return e.translation.max; }, 4)},
+      {{"ATE m"}, length([](const Evaluation& e) { return e.translation.rmse; })},
+      {{"median"}, length([](const Evaluation& e) { return e.translation.median; })},
+      {{"worst"}, length([](const Evaluation& e) { return e.translation.max; })},
       {{"tilt °"}, degrees(&traces::AttitudeErrors::tilt_rmse_deg)},
       {{"heading °"}, degrees(&traces::AttitudeErrors::heading_rmse_deg)},
       {{"scale"}, fixed([](const Evaluation& e) { return e.alignment.scale; }, 4)},
@@ -292,8 +295,8 @@ std::string conclusion(const std::vector<Evaluated>& all) {
       });
   const Evaluation& e = best.accuracy.evaluation;
   std::string text =
-      fmt::format("in short: {}: {:.3f} m RMSE", short_name(best, all), e.translation.rmse);
-  if (e.path_length_m > 0)
+      fmt::format("in short: {}: {} RMSE", short_name(best, all), metres(e.translation.rmse, 3));
+  if (e.path_length_m > 0 && e.translation.rmse < kDiverged_m)
     text += fmt::format(", {:.2f} % of the path", 100 * e.translation.rmse / e.path_length_m);
   return text;
 }

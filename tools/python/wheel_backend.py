@@ -22,14 +22,20 @@ def _metadata():
     return f"Metadata-Version: 2.1\nName: leviosim\nVersion: {_version()}\nRequires-Dist: numpy\n"
 
 
+def _tag():
+    """Of the Python that the module was built for, which is Debian's, whichever runs this."""
+    names = [re.match(r"_core\.cpython-(\d+)-.*\.so$", name) for name in os.listdir(PACKAGE)]
+    version = next(name.group(1) for name in names if name)
+    return "cp{0}-cp{0}-{1}".format(version, re.sub(r"[-.]", "_", sysconfig.get_platform()))
+
+
 def get_requires_for_build_wheel(config_settings=None):
     return []
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     subprocess.run([os.path.join(ROOT, "tools", "build.sh"), "python", "leviosim_python"], check=True)
-    tag = "cp{0}-cp{0}-{1}".format(sysconfig.get_config_var("py_version_nodot"),
-                                   re.sub(r"[-.]", "_", sysconfig.get_platform()))
+    tag = _tag()
     about = f"leviosim-{_version()}.dist-info"
     files = {f"{about}/METADATA": _metadata().encode(),
              f"{about}/WHEEL": f"Wheel-Version: 1.0\nGenerator: leviosim\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()}

@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 
+NAME = pathlib.Path(sys.argv[0]).name  # leviosim-measure, where it is installed
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 LAYOUTS = ("0", "4", "8", "12")
@@ -57,7 +58,7 @@ def chosen(named):
         if missing_for("rv32imfc"):
             raise Refused(missing_for("rv32imfc"))
         for isa in filter(missing_for, SETS):
-            print(f"leviosim-measure: without {isa}; {missing_for(isa)}", file=sys.stderr)
+            print(f"{NAME}: without {isa}; {missing_for(isa)}", file=sys.stderr)
         return [isa for isa in SETS if not missing_for(isa)]
     for isa in named:
         if isa not in SETS:
@@ -152,13 +153,13 @@ def measure(words):
 
 def main():
     if sys.argv[1:2] in (["--help"], ["-h"]):
-        print(__doc__)
+        print(__doc__.replace("measure_kernels.py", NAME))
         return 0
     try:
         measure(sys.argv[1:])
         return 0
     except (Refused, OSError) as refusal:
-        print(f"leviosim-measure: {refusal}", file=sys.stderr)
+        print(f"{NAME}: {refusal}", file=sys.stderr)
         return 2
 
 

@@ -37,7 +37,9 @@ void refuse_bags(const fs::path& path) {
       bag = bag || is_bag(entry.path());
   if (bag)
     throw InputError(fmt::format(
-        "{}: a ROS bag; tools/rosbag_to_asl.py makes an ASL folder of ROS 2 bags", path.string()));
+        "{}: a ROS bag; leviosim-bag-to-asl (tools/rosbag_to_asl.py) makes an ASL folder of ROS 2 "
+        "bags",
+        path.string()));
 }
 
 }  // namespace

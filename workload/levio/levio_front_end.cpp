@@ -48,13 +48,13 @@ void LevioFrontEnd<P>::extract(Frame<P>& frame) {
   const Profile& profile = state_.profile;
   const auto kind =
       profile.released ? levio::DescriptorKind::Released : levio::DescriptorKind::Exact;
-  frame.features = alloc_frame_features(state_);
-  FeatureList<P>& list = frame.features.list;
-  if (state_.residence.image)
-    levio::extract_features<P>(state_.machine, keyframe.image, profile.extractor, kind, list);
-  else
-    levio::extract_features_in_strips<P>(state_.machine, keyframe.image, keyframe.blurred,
-                                         profile.extractor, kind, list);
+  frame.features = features_of_frame<P>(state_, [&](FeatureList<P>& list) {
+    if (state_.residence.image)
+      levio::extract_features<P>(state_.machine, keyframe.image, profile.extractor, kind, list);
+    else
+      levio::extract_features_in_strips<P>(state_.machine, keyframe.image, keyframe.blurred,
+                                           profile.extractor, kind, list);
+  });
   forget_landmarks(frame);
 }
 

@@ -21,12 +21,12 @@ void extract_frame(FrontEndState<P>& state, Frame<P>& frame) {
   const auto stage = state.machine.stage(stages::kExtraction);
   const ExtractorOptions& options = state.profile.extractor;
   const KeyframeRecord<P>& keyframe = state.keyframe;
-  frame.features = alloc_frame_features(state);
-  if (!state.residence.image)
-    extract_features_in_strips<P>(state.machine, keyframe.image, keyframe.blurred, options,
-                                  frame.features.list);
-  else
-    extract_features<P>(state.machine, keyframe.image, options, frame.features.list);
+  frame.features = features_of_frame<P>(state, [&](FeatureList<P>& list) {
+    if (!state.residence.image)
+      extract_features_in_strips<P>(state.machine, keyframe.image, keyframe.blurred, options, list);
+    else
+      extract_features<P>(state.machine, keyframe.image, options, list);
+  });
   forget_landmarks(frame);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sim/base/check.h"
 #include "workload/levio/geometry/epnp_ransac.h"
 #include "workload/vio/keyframe_record.h"
 
@@ -54,26 +55,63 @@ FrontEndState<P>::FrontEndState(const Profile& parameters, const Rig& camera_rig
       graph(in_l2),
       graph_in_l2(seen_from_cluster<P>(in_l2)) {}
 
+namespace {
+
+/// Room for keypoints, and the place of their descriptors.
 template <class P>
-ObservedFeatures<P> alloc_frame_features(const FrontEndState<P>& state) {
+FeatureList<P> alloc_list(const FrontEndState<P>& state, int capacity) {
   work::Arena& local = state.machine.local();
-  const int capacity = state.keyframe.features.list.capacity;
+  if (state.residence.descriptors) return alloc_features<P>(local, capacity);
+  FeatureList<P> list = alloc_keypoints<P>(local, capacity);
+  list.descriptors = state.keyframe.fresh;
+  list.descriptors_in_l2 = true;
+  return list;
+}
+
+/// A list of so many features whose columns move together to where it begins.
+template <class P>
+FeatureList<P> shortened(const FrontEndState<P>& state, const FeatureList<P>& from, int capacity) {
+  using I32 = typename P::I32;
+  FeatureList<P> list = alloc_list(state, capacity);
+  list.count = from.count;
+  check(list.x.data() == from.x.data(), "the shorter list begins where the long one did");
+  for (int i : P::range(0, from.count))
+    list.y[i] = work::narrow<typename P::U16>(I32(from.y[i]));
+  return list;
+}
+
+}  // namespace
+
+template <class P>
+ObservedFeatures<P> features_of_frame(const FrontEndState<P>& state,
+                                      const std::function<void(FeatureList<P>&)>& extract) {
+  work::Arena& local = state.machine.local();
+  const FeatureList<P>& old = state.keyframe.features.list;
+  const bool whole = state.residence.whole_lists || state.residence.descriptors;
   ObservedFeatures<P> features;
-  if (state.residence.descriptors) {
-    features.list = alloc_features<P>(local, capacity);
+  if (whole) {
+    features.list = alloc_list(state, old.capacity);
   } else {
-    features.list = alloc_keypoints<P>(local, capacity);
-    features.list.descriptors = state.keyframe.fresh;
-    features.list.descriptors_in_l2 = true;
+    FeatureList<P> all;
+    {
+      const work::Arena::Frame room(local);
+      all = alloc_list(state, old.capacity);
+      extract(all);
+    }
+    features.list = shortened(
+        state, all, std::min(old.capacity, all.count + most_found_by_patches(state)));
   }
-  features.landmarks =
-      local.alloc<typename P::template Span<typename P::U16>>("landmarks of features", capacity);
+  features.landmarks = local.alloc<typename P::template Span<typename P::U16>>(
+      "landmarks of features", features.list.capacity);
+  if (whole) extract(features.list);
   return features;
 }
 
-template ObservedFeatures<work::Native> alloc_frame_features(const FrontEndState<work::Native>&);
-template ObservedFeatures<work::Counting> alloc_frame_features(
-    const FrontEndState<work::Counting>&);
+template ObservedFeatures<work::Native> features_of_frame(
+    const FrontEndState<work::Native>&, const std::function<void(FeatureList<work::Native>&)>&);
+template ObservedFeatures<work::Counting> features_of_frame(
+    const FrontEndState<work::Counting>&,
+    const std::function<void(FeatureList<work::Counting>&)>&);
 template struct FrontEndState<work::Native>;
 template struct FrontEndState<work::Counting>;
 

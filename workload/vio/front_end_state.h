@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 
 #include "sim/work/machine.h"
 #include "workload/graph/pose_graph.h"
@@ -46,8 +47,20 @@ int list_capacity(const FrontEndState<P>& state, int number) {
   return state.residence.whole_lists ? all : std::min(all, number);
 }
 
-/// Room for the features of the frame, in local memory; their descriptors may lie in L2.
+/// How many features of the last keyframe its patches may find that have no match: such as show a
+/// landmark, and no two show the same.
 template <class P>
-ObservedFeatures<P> alloc_frame_features(const FrontEndState<P>& state);
+int most_found_by_patches(const FrontEndState<P>& state) {
+  return state.profile.patches.enabled
+             ? std::min(state.keyframe.features.list.count, state.graph.capacity.landmarks)
+             : 0;
+}
+
+/// The features that extract(list) finds, and room for their landmarks, in local memory; their
+/// descriptors may lie in L2. Where lists are not whole, there is room for as many as were found
+/// and for those of the keyframe that patches may find.
+template <class P>
+ObservedFeatures<P> features_of_frame(const FrontEndState<P>& state,
+                                      const std::function<void(FeatureList<P>&)>& extract);
 
 }  // namespace leviosim::vio

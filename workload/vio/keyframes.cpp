@@ -187,7 +187,8 @@ void alloc_keyframe_matches(const FrontEndState<P>& state, Frame<P>& frame) {
   const int capacity = list_capacity(state, old);
   // Features of the keyframe that are found by their patches become matches, too.
   frame.matches.list = alloc_matches<P>(
-      local, list_capacity(state, frame.features.list.count + old), "frame matches");
+      local, list_capacity(state, frame.features.list.count + most_found_by_patches(state)),
+      "frame matches");
   frame.matches.pixels = local.alloc<Table>("keypoints of the keyframe", 2 * capacity);
   frame.matches.first_v = capacity;
   frame.matches.landmarks = local.alloc<Table>("landmarks of the keyframe", capacity);

@@ -115,8 +115,8 @@ class Writer {
     title("the run as a whole");
     Table t({{"", kLeft}, {"A"}, {"B"}, {"unit", kLeft}, {"change"}});
     for (const ComparedQuantity& q : c_.figures)
-      t.add({q.name, figure_text(q.a, decimals_of(q.unit)), figure_text(q.b, decimals_of(q.unit)),
-             q.unit, signed_percent(q.percent())});
+      t.add({q.name, quantity_text(q.a, q.unit, decimals_of(q.unit)),
+             quantity_text(q.b, q.unit, decimals_of(q.unit)), q.unit, signed_percent(q.percent())});
     table(t);
   }
 

@@ -66,7 +66,8 @@ std::string figure_lines(const RunComparison& c) {
     if ((q.a == q.b && !is_first) || rows == kMostFigures) continue;
     ++rows;
     const int decimals = q.unit == "m" || q.unit == "mJ" ? 3 : q.unit == "ms" ? 2 : 1;
-    table.add({q.name, figure_text(q.a, decimals), figure_text(q.b, decimals), q.unit,
+    table.add({q.name, quantity_text(q.a, q.unit, decimals), quantity_text(q.b, q.unit, decimals),
+               q.unit,
                q.percent() ? fmt::format("{:+.1f} %", *q.percent()) : kNothing});
   }
   return terminal_text(table, kScreenColumns);
@@ -117,7 +118,8 @@ std::vector<std::string> cause_lines(const RunComparison& c) {
     lines.push_back(screen_line("  " + cause_text(cause)));
   if (!lines.empty())
     lines.insert(lines.begin(), screen_line("why a mean frame takes another time:"));
-  if (std::string tiles = tiles_line(c); !tiles.empty()) lines.push_back(std::move(tiles));
+  if (std::string tiles = tiles_line(c); !tiles.empty())
+    lines.insert(lines.begin(), std::move(tiles));
   const std::string unused = unused_text(unused_accelerators(c.a), unused_accelerators(c.b));
   if (!unused.empty())
     lines.push_back(wrap({unused.substr(0, unused.find(", because")) + ",",

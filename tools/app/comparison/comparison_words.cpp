@@ -10,6 +10,10 @@
 
 namespace leviosim::tools {
 
+std::string quantity_text(std::optional<double> value, const std::string& unit, int decimals) {
+  return unit == "m" ? metres_text(value, decimals) : figure_text(value, decimals);
+}
+
 std::string signed_percent(std::optional<double> value) {
   if (!value) return kNothing;
   if (std::abs(*value) < 0.005) return *value == 0 ? "0" : "±0.00 %";

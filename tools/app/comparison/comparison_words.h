@@ -13,6 +13,9 @@ namespace leviosim::tools {
 /// "+1.25 %"; "±0.00 %" for what rounds to zero.
 std::string signed_percent(std::optional<double> value);
 
+/// Of a figure, without its unit.
+std::string quantity_text(std::optional<double> value, const std::string& unit, int decimals);
+
 /// A part that changes its stage by less explains nothing.
 inline constexpr double kLeastShare = 1e-4;
 

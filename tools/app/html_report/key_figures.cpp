@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/app/result/summary.h"
+#include "tools/app/table/cell.h"
 
 namespace leviosim::tools {
 
@@ -112,7 +113,7 @@ std::vector<KeyFigure> key_figures(const RunRecord& run, const std::string& prot
   add_energy(list, run);
   const auto error = run.value("accuracy.ate.rmse");
   if (error && !protocol.empty())
-    list.push_back({"Position error (ATE)", fmt::format("{:.3f}", *error), "m RMSE", protocol, {}});
+    list.push_back({"Position error (ATE)", metres_text(*error, 3), "m RMSE", protocol, {}});
   return list;
 }
 

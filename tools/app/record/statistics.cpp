@@ -331,6 +331,7 @@ void add_area(StatisticList& list, const RunResult& run) {
 }
 
 void add_accuracy(StatisticList& list, const RunResult& run) {
+  if (!has_poses(run)) return;
   list.add("trajectory.poses", "1", "poses of the trajectory", run.trajectory.size());
   list.add("trajectory.length", "m", "length of the estimated path",
            rounded(path_length(run.trajectory)));

@@ -44,13 +44,15 @@ std::string table_of(const std::vector<RelativeErrors>& errors) {
 
 std::string ate_text(const Evaluation& evaluation) {
   const ErrorSummary& t = evaluation.translation;
+  if (!(t.rmse < kDiverged_m)) return fmt::format("ATE: {}\n     {}\n", kDiverged, evaluation.protocol);
   return fmt::format(
-             "ATE: {} m RMSE ({} mean, {} median, {} worst)\n"
+             "ATE: {} RMSE ({} mean, {} median, {} worst)\n"
              "{}     {}\n",
-             readable(t.rmse, 3), readable(t.mean, 3), readable(t.median, 3), readable(t.max, 3),
+             metres(t.rmse, 3), metres_text(t.mean, 3), metres_text(t.median, 3),
+             metres_text(t.max, 3),
              evaluation.located_rmse_m
-                 ? fmt::format("     {} m RMSE without the poses that are guesses\n",
-                               readable(*evaluation.located_rmse_m, 3))
+                 ? fmt::format("     {} RMSE without the poses that are guesses\n",
+                               metres(*evaluation.located_rmse_m, 3))
                  : "",
              evaluation.protocol) +
          attitude_text(evaluation);

@@ -178,6 +178,7 @@ std::string_view without_ate(const RunResult& run) {
 }
 
 std::vector<std::string> trajectory_lines(const RunResult& run) {
+  if (!has_poses(run)) return {};
   const std::int64_t restarts = map_restarts(run);
   std::string again = restarts > 0 ? fmt::format(", restarts of the map {}", restarts) : "";
   const std::int64_t initialising = std::count_if(
@@ -186,16 +187,17 @@ std::vector<std::string> trajectory_lines(const RunResult& run) {
   if (initialising > 0) again += fmt::format(", initialising for {} frames", initialising);
   if (const std::optional<int> rests = figures_of(run).map.at_rest_since)
     again += fmt::format(", at rest since frame {}", *rests);
-  const std::string length = fmt::format("trajectory: {} poses, {} m", run.trajectory.size(),
-                                         readable(path_length(run.trajectory), 2));
+  const std::string length = fmt::format("trajectory: {} poses, {}", run.trajectory.size(),
+                                         metres(path_length(run.trajectory), 2));
   if (const std::string why = why_incomparable(run); !why.empty())
     return {length + again, "ATE: none: " + why};
   if (!run.ate) return {fmt::format("{}{}, {}", length, again, without_ate(run))};
-  std::string text =
-      fmt::format("trajectory: ATE {} m RMSE", readable(run.ate->translation.rmse, 3));
+  std::string text = "trajectory: ATE " + metres(run.ate->translation.rmse, 3);
+  if (text.ends_with(kDiverged)) return {text + again, "  " + short_protocol(*run.ate)};
+  text += " RMSE";
   if (run.ate->located_rmse_m)
-    text += fmt::format(" ({} m without guesses)", readable(*run.ate->located_rmse_m, 3));
-  text += fmt::format(", {} m worst", readable(run.ate->translation.max, 3));
+    text += fmt::format(" ({} without guesses)", metres(*run.ate->located_rmse_m, 3));
+  text += fmt::format(", {} worst", metres(run.ate->translation.max, 3));
   if (const auto attitude = traces::attitude_errors(*run.ate))
     text += fmt::format(", tilt {:.1f}°, heading {:.1f}°{}", attitude->tilt_rmse_deg,
                         attitude->heading_rmse_deg,
@@ -249,7 +251,12 @@ std::string native_line(const RunResult& run) {
 
 }  // namespace
 
-std::string verdict(const RunResult& run) { return "verdict: " + figures_of(run).verdicts.text(); }
+std::string verdict(const RunResult& run) {
+  const Verdicts verdicts = figures_of(run).verdicts;
+  if (verdicts.list.empty() && !run.frames.empty())
+    return "verdict: none, as neither times nor poses are known";
+  return "verdict: " + verdicts.text();
+}
 
 std::string run_summary(const std::string& heading, const RunResult& run, int width, int others) {
   std::vector<std::string> below;
@@ -345,8 +352,10 @@ std::string frame_summary(const RunResult& run) {
 }
 
 std::string trajectory_summary(const RunResult& run) {
-  std::string text = fmt::format("trajectory: {} poses, {} m long\n", run.trajectory.size(),
-                                 readable(path_length(run.trajectory), 2));
+  if (!has_poses(run)) return {};
+  const std::string length = metres(path_length(run.trajectory), 2);
+  std::string text = fmt::format("trajectory: {} poses, {}{}\n", run.trajectory.size(), length,
+                                 length == kDiverged ? "" : " long");
   if (run.poses_left_out > 0)
     text += fmt::format("            {} more are NaN and are left out\n", run.poses_left_out);
   if (const std::string why = why_incomparable(run); !why.empty())
@@ -370,6 +379,7 @@ std::string host_line(const RunResult& run) {
 }
 
 std::string map_warning(const RunResult& run) {
+  if (!has_poses(run)) return {};
   const RunVerdict verdict = map_verdict(figures_of(run).map);
   return verdict.grade <= Grade::unknown ? "" : fmt::format("warning: {}\n", verdict.text());
 }

@@ -211,12 +211,13 @@ double deadline_ns(const RunFigures& run) {
 void complete(RunFigures& run, const std::vector<RecordedFrame>& frames) {
   add_memory_statistics(run);
   add_operations(run);
-  const double left_out =
-      run.value("frames.count").value_or(0) - run.value("trajectory.poses").value_or(0);
+  const std::optional<double> poses = run.value("trajectory.poses");
+  const double left_out = poses ? run.value("frames.count").value_or(0) - *poses : 0;
   run.map = map_signs(frames,
                       {run.value("accuracy.ate.rmse"), run.value("accuracy.truth_length"),
                        run.value("accuracy.size_ratio"), run.value("accuracy.ate.located")},
                       std::max<std::int64_t>(0, std::llround(left_out)));
+  run.map.has_poses = poses.has_value();
   run.verdicts = verdicts_of(run);
   for (const RunVerdict& verdict : run.verdicts.list)
     run.statistics.push_back({fmt::format("verdict.{}", verdict.about),

@@ -79,6 +79,7 @@ struct FrameSpan {
 
 /// Evidence for the verdict on the map.
 struct MapSigns {
+  bool has_poses = true;  ///< of a workload without, there is nothing to judge
   TruthSigns truth;
   double kept_s = 0;                ///< longest time without a new pose [s]
   double initialising_s = 0;        ///< longest initialisation [s]
@@ -113,7 +114,7 @@ struct RunVerdict {
 };
 
 struct Verdicts {
-  std::vector<RunVerdict> list;  ///< time, memory, map; native runs have the last only
+  std::vector<RunVerdict> list;  ///< time, memory, map, as far as there is something to judge
 
   /// The worst; good only if all are.
   Grade grade() const;

@@ -287,6 +287,14 @@ double path_length(const std::vector<traces::StampedPose>& trajectory) {
   return length;
 }
 
+bool has_poses(const RunResult& run) {
+  const auto is_origin = [](const traces::StampedPose& pose) {
+    return pose.T_world_body.matrix() == Eigen::Matrix4d::Identity();
+  };
+  return run.trajectory.empty() ||
+         !std::all_of(run.trajectory.begin(), run.trajectory.end(), is_origin);
+}
+
 CameraFigures::Latencies latencies_of(const RunResult& run) {
   std::vector<std::int64_t> sorted;
   for (const FrameResult& frame : run.frames) sorted.push_back(frame.end_ns - frame.arrival_ns);

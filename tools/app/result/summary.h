@@ -99,5 +99,7 @@ std::string readable(double value, int decimals);
 
 /// Length of the estimated path [m].
 double path_length(const std::vector<traces::StampedPose>& trajectory);
+/// Whether the workload says where the body is: one that does not leaves it at the origin.
+bool has_poses(const RunResult& run);
 
 }  // namespace leviosim::tools

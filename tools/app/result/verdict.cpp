@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "tools/app/result/summary.h"
+#include "tools/app/table/cell.h"
 
 namespace leviosim::tools {
 namespace {
@@ -193,6 +194,7 @@ void judge_by_truth(const TruthSigns& truth, const MapLimits& limits, const Faul
   const double path_m = std::max(*truth.path_m, kShortestPath_m);
   const double error_m = truth.located_m.value_or(*truth.error_m);
   const double share = error_m / path_m;
+  if (!(error_m < kDiverged_m)) return fault(true, "the path diverged");
   if (share > limits.error_share)
     fault(share > limits.lost_error_share,
           is_short ? fmt::format("the error is {} m on a path of {} m", readable(error_m, 2),
@@ -256,7 +258,7 @@ Verdicts verdicts_of(const RunFigures& run) {
   if (std::optional<RunVerdict> time = time_verdict(run)) all.list.push_back(std::move(*time));
   if (std::optional<RunVerdict> memory = memory_verdict(run))
     all.list.push_back(std::move(*memory));
-  all.list.push_back(map_verdict(run.map));
+  if (run.map.has_poses) all.list.push_back(map_verdict(run.map));
   return all;
 }
 

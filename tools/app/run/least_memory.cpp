@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "sim/base/interruption.h"
 #include "sim/work/arena.h"
@@ -16,16 +17,16 @@ namespace leviosim::tools {
 namespace {
 
 constexpr std::int64_t kKib = 1024;
-constexpr Bytes kMostL1{16 * kKib * kKib};
+constexpr Bytes kLargest{16 * kKib * kKib};
 constexpr Bytes kAnyL2{std::int64_t{1} << 28};
 
 /// @throws work::MemoryOverflow
-void fly_in(const RunRequest& request, const vio::Profile& profile, Bytes l1) {
+void fly_in(const RunRequest& request, const vio::Profile& profile, Bytes l1, Bytes l2) {
   Feed feed(request);
-  work::MachineConfig config = cluster_machine(request, profile.l1_alignment, l1);
-  config.record = false;
-  work::Machine cluster(config);
-  work::Machine controller({.cores = 1, .memory = "L2", .capacity = kAnyL2});
+  work::MachineConfig cluster_config = cluster_machine(request, profile.l1_alignment, l1);
+  work::MachineConfig controller_config = controller_machine(request, l2);
+  cluster_config.record = controller_config.record = false;
+  work::Machine cluster(cluster_config), controller(controller_config);
   const auto odometry = vio::make_odometry(false, profile, feed.rig(), cluster, controller);
   for (int i = 0; i < feed.size(); ++i) {
     throw_if_interrupted();
@@ -36,43 +37,63 @@ void fly_in(const RunRequest& request, const vio::Profile& profile, Bytes l1) {
   }
 }
 
-/// What is missing in an L1; 0 if it is enough.
-Bytes missing_in(const RunRequest& request, const vio::Profile& profile, Bytes l1) {
+/// What is missing for a flight; 0 if nothing is. Absent if another memory than L2, or than L1,
+/// overflows.
+std::optional<Bytes> missing_in(const RunRequest& request, Bytes l1, Bytes l2, bool of_l2) {
   try {
-    fly_in(request, profile, l1);
+    fly_in(request, profile_of(request), l1, l2);
     return Bytes(0);
   } catch (const work::MemoryOverflow& overflow) {
+    if ((overflow.memory() == "L2") != of_l2) return std::nullopt;
     return std::max(overflow.missing(), Bytes(1));
   }
+}
+
+/// The least size in which nothing is missing.
+std::optional<Bytes> least(Bytes from,
+                           const std::function<std::optional<Bytes>(Bytes size)>& missing) {
+  const Bytes kib(kKib);
+  Bytes failed(from.count() / kKib * kKib);
+  Bytes works = failed + kib;
+  std::optional<Bytes> more = missing(works);
+  for (; more && *more > Bytes(0); more = missing(works)) {
+    failed = works;
+    works += Bytes((more->count() + kKib - 1) / kKib * kKib);
+    if (works > kLargest) return std::nullopt;
+  }
+  if (!more) return std::nullopt;
+  // Tiles of another size may need less than was missing.
+  while (works - kib > failed && missing(works - kib) == Bytes(0)) works -= kib;
+  return works;
+}
+
+bool is_odometry(const RunRequest& request) {
+  return vio::other_profile(request.profile) == nullptr;
 }
 
 }  // namespace
 
 std::optional<Bytes> least_l1(const RunRequest& request, Bytes from) {
-  if (vio::other_profile(request.profile) != nullptr) return std::nullopt;
-  const vio::Profile profile = profile_of(request);
-  const Bytes kib(kKib);
-  Bytes failed(from.count() / kKib * kKib);
-  Bytes works = failed + kib;
-  for (Bytes missing = missing_in(request, profile, works); missing > Bytes(0);
-       missing = missing_in(request, profile, works)) {
-    failed = works;
-    works += Bytes((missing.count() + kKib - 1) / kKib * kKib);
-    if (works > kMostL1) return std::nullopt;
-  }
-  // Tiles of another size may need less than was missing.
-  while (works - kib > failed && missing_in(request, profile, works - kib) == Bytes(0))
-    works -= kib;
-  return works;
+  if (!is_odometry(request)) return std::nullopt;
+  return least(from, [&](Bytes l1) { return missing_in(request, l1, kAnyL2, false); });
+}
+
+std::optional<Bytes> least_l2(const RunRequest& request, Bytes from) {
+  if (!is_odometry(request)) return std::nullopt;
+  const Bytes l1 = l1_of(request, profile_of(request));
+  return least(from, [&](Bytes l2) { return missing_in(request, l1, l2, true); });
 }
 
 std::string larger_memory(const RunRequest& request, const work::MemoryOverflow& overflow) {
-  if (overflow.memory() == "L2") return "a larger l2.size has more";
+  const auto kib = [](Bytes size) { return (size.count() + kKib - 1) / kKib; };
+  if (overflow.memory() == "L2") {
+    const std::optional<Bytes> least = least_l2(request, request.platform.config.l2.size);
+    if (!least) return "a larger l2.size has more";
+    return fmt::format("l2.size={}KiB is the least in which a native run works", kib(*least));
+  }
   const Bytes all = request.platform.config.cluster.l1.size;
-  const bool is_odometry = vio::other_profile(request.profile) == nullptr;
-  const Bytes had = is_odometry ? l1_of(request, profile_of(request)) : all;
+  const Bytes had = is_odometry(request) ? l1_of(request, profile_of(request)) : all;
   const std::optional<Bytes> least = least_l1(request, had);
-  const auto kib = [](Bytes size) { return (size.count() + 1023) / 1024; };
   if (least && *least <= all)
     return fmt::format("workload.l1={}KiB is the least in which a native run works", kib(*least));
   if (least)

@@ -1,4 +1,4 @@
-// The least L1 in which the work of a request fits: what a user asks for whom a smaller one
+// The least L1 or L2 in which the work of a request fits: what a user asks for whom a smaller one
 // refuses.
 #pragma once
 
@@ -16,6 +16,8 @@ namespace leviosim::tools {
 /// @param from  that is too small
 /// @return nothing where no size up to 16 MiB works, and of workloads that are not the odometry
 std::optional<Bytes> least_l1(const RunRequest& request, Bytes from);
+/// The same of L2, beside the chip's own L1 and external memory.
+std::optional<Bytes> least_l2(const RunRequest& request, Bytes from);
 
 /// How to have more of the memory that overflowed: "workload.l1=18KiB is the least in which a
 /// native run works".

@@ -43,19 +43,6 @@ Bytes external_of(const RunRequest& request) {
   return request.native || memory.bytes_per_second <= 0 ? Bytes(0) : memory.size;
 }
 
-work::MachineConfig controller_machine(const RunRequest& request) {
-  Bytes l2 = request.platform.config.l2.size;
-  if (request.camera) l2 -= soc::second_buffer(request.image_size.width, request.image_size.height);
-  return {.cores = 1,
-          .memory = "L2",
-          .capacity = request.native ? native_room(request) : l2,
-          .alignment = 4,
-          .record = !request.native,
-          .offload = follows_offload(request),
-          .code = &platform::compiled_code(),
-          .external = external_of(request)};
-}
-
 /// The pose that the workload reports for the camera, of the body and in double precision.
 traces::StampedPose body_pose(const vio::CameraPose& report, const traces::CameraModel& camera,
                               std::int64_t t_ns) {
@@ -108,6 +95,18 @@ work::MachineConfig cluster_machine(const RunRequest& request, int alignment, By
           .code = &platform::compiled_code()};
 }
 
+work::MachineConfig controller_machine(const RunRequest& request, Bytes l2) {
+  if (request.camera) l2 -= soc::second_buffer(request.image_size.width, request.image_size.height);
+  return {.cores = 1,
+          .memory = "L2",
+          .capacity = request.native ? native_room(request) : l2,
+          .alignment = 4,
+          .record = !request.native,
+          .offload = follows_offload(request),
+          .code = &platform::compiled_code(),
+          .external = external_of(request)};
+}
+
 std::vector<StageResult> named_stages(const std::vector<vio::StageName>& names) {
   std::vector<StageResult> stages;
   for (const vio::StageName& name : names) {
@@ -125,7 +124,7 @@ LiveSource::LiveSource(const RunRequest& request)
       evaluate_(request.evaluate),
       feed_(request),
       cluster_(cluster_machine(request, profile_.l1_alignment, l1_of(request, profile_))),
-      controller_(controller_machine(request)),
+      controller_(controller_machine(request, request.platform.config.l2.size)),
       odometry_(vio::make_odometry(!request.native, profile_, feed_.rig(), cluster_, controller_)) {
   if (profile_.use_imu && feed_.data().imu.empty())
     throw InputError(fmt::format(

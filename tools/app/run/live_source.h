@@ -51,6 +51,9 @@ work::MachineConfig cluster_machine(const RunRequest& request, int alignment);
 /// The same with so much L1.
 work::MachineConfig cluster_machine(const RunRequest& request, int alignment, Bytes l1);
 
+/// The machine of the request's controller, with so much L2, the camera's part among it.
+work::MachineConfig controller_machine(const RunRequest& request, Bytes l2);
+
 /// What the profile leaves its workload of the request's L1.
 Bytes l1_of(const RunRequest& request, const vio::Profile& profile);
 

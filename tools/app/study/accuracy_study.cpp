@@ -177,7 +177,7 @@ std::optional<double> error_of(const RunOutcome& outcome) {
 }
 
 std::string error_text(const std::optional<double>& error, int decimals) {
-  return figure_text(error, decimals, kDiverged);
+  return metres_text(error, decimals, kDiverged);
 }
 
 RunRecord record_of(const RunOutcome& outcome) {

@@ -64,7 +64,6 @@ RunOutcome outcome_of(const RunResult& run, const traces::Trajectory& truth, con
 /// The error of the run; none if it diverged: it has no error, or one above the length of the path.
 std::optional<double> error_of(const RunOutcome& outcome);
 
-inline constexpr const char* kDiverged = "diverged";
 /// Of error_of() or a median of such, with so many decimals.
 std::string error_text(const std::optional<double>& error, int decimals);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "tools/app/table/json.h"
 
 namespace leviosim::tools {
@@ -17,6 +19,16 @@ Cell spelled(std::string_view text) {
 
 std::string figure_text(std::optional<double> value, int decimals, std::string_view otherwise) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : std::string(otherwise);
+}
+
+std::string metres_text(std::optional<double> metres, int decimals, std::string_view otherwise) {
+  return metres && !(std::abs(*metres) < kDiverged_m) ? kDiverged
+                                                      : figure_text(metres, decimals, otherwise);
+}
+
+std::string metres(double metres, int decimals) {
+  const std::string text = metres_text(metres, decimals);
+  return text == kDiverged ? text : text + " m";
 }
 
 }  // namespace leviosim::tools

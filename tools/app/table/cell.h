@@ -49,6 +49,15 @@ inline constexpr const char* kNothing = "–";
 std::string figure_text(std::optional<double> value, int decimals,
                         std::string_view otherwise = kNothing);
 
+/// Of an error or a path that is no length any more: farther than any vehicle flies.
+inline constexpr const char* kDiverged = "diverged";
+inline constexpr double kDiverged_m = 1e6;
+/// Metres with so many decimals, without the unit; or kDiverged.
+std::string metres_text(std::optional<double> metres, int decimals,
+                        std::string_view otherwise = kNothing);
+/// "0.366 m"; or kDiverged.
+std::string metres(double metres, int decimals);
+
 /// In another unit.
 inline std::optional<double> scaled(std::optional<double> value, double factor) {
   return value ? std::optional(*value * factor) : std::nullopt;

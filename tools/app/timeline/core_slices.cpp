@@ -12,6 +12,10 @@ namespace {
 /// Waits below this share of a slice stand in its annotations only.
 constexpr double kLeastDrawn = 0.01;
 
+/// In their order.
+constexpr std::array<std::string_view, 4> kDirections{"L2 to L1", "L1 to L2", "external to L2",
+                                                      "L2 to external"};
+
 void annotate(std::vector<Annotation>& notes, const sim::MechanismCycles& t) {
   notes.push_back({"work", own_work(t)});
   for (const Wait& wait : kWaits)
@@ -109,14 +113,22 @@ void CoreSlices::add_idle(const StepEvents& step, const CoreEvents& core) {
   writer_.end(track, ns(step.end));
 }
 
+void CoreSlices::add_transfers(const StageEvents& stage) {
+  for (const StepEvents& step : stage.steps)
+    for (const TransferEvents& transfer : step.transfers) add_transfer(transfer);
+}
+
 void CoreSlices::add_transfer(const TransferEvents& transfer) {
-  const bool to_l1 = transfer.direction == work::Direction::L2ToL1;
-  const std::uint64_t track = to_l1 ? tracks_.to_l1 : tracks_.to_l2;
+  const auto direction = static_cast<std::size_t>(transfer.direction);
+  const std::uint64_t track = tracks_.transfers[direction];
   std::vector<Annotation> notes{{"cycle", cycle(transfer.begin)},
                                 {"bytes", transfer.bytes.count()}};
   if (transfer.transfers > 1) notes.push_back({"transfers", std::int64_t{transfer.transfers}});
-  writer_.begin(track, ns(transfer.begin),
-                {to_l1 ? "L2 to L1" : "L1 to L2", false, std::move(notes)});
+  if (transfer.tiles > 1) notes.push_back({"tiles", std::int64_t{transfer.tiles}});
+  const bool is_tile = transfer.tiles > 0 && transfer.tiles == transfer.transfers;
+  const std::string name =
+      fmt::format("{}{}", is_tile ? "tile, " : "", kDirections[direction]);
+  writer_.begin(track, ns(transfer.begin), {name, false, std::move(notes)});
   writer_.end(track, ns(transfer.end));
 }
 

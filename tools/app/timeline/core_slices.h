@@ -1,6 +1,7 @@
 // What cores and DMA do in a stage, as slices on their tracks.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "tools/app/timeline/frame_events.h"
@@ -9,8 +10,7 @@
 namespace leviosim::tools {
 
 struct ClusterTracks {
-  std::uint64_t to_l1 = 0;
-  std::uint64_t to_l2 = 0;
+  std::array<std::uint64_t, 4> transfers{};  ///< by direction
   std::vector<std::uint64_t> cores;  ///< by number; the master is the last
 };
 
@@ -19,16 +19,19 @@ std::int64_t nanoseconds(const sim::Timebase& timebase, sim::Time time);
 
 class CoreSlices {
  public:
+  /// @param clock       in whose cycles: "cluster", "controller"
   /// @param work_begin  from which cycles are counted
-  CoreSlices(const ClusterTracks& tracks, const sim::Timebase& timebase, sim::Time work_begin,
-             TrackEventWriter& writer)
+  CoreSlices(const ClusterTracks& tracks, const sim::Timebase& timebase, std::string_view clock,
+             sim::Time work_begin, TrackEventWriter& writer)
       : tracks_(tracks),
         timebase_(timebase),
-        clock_(timebase.clock("cluster")),
+        clock_(timebase.clock(clock)),
         work_begin_(work_begin),
         writer_(writer) {}
 
   void add(const StageEvents& stage);
+  /// Data of all its steps, on the tracks of their directions.
+  void add_transfers(const StageEvents& stage);
 
  private:
   std::uint64_t master() const { return tracks_.cores.back(); }

@@ -30,13 +30,14 @@ struct CoreEvents {
   sim::MechanismCycles split;  ///< breakdown of `worked`; adds up to it
 };
 
-/// Data in one direction of the DMA.
+/// Data in one direction of the DMA, or of external memory.
 struct TransferEvents {
   work::Direction direction = work::Direction::L2ToL1;
   sim::Time begin;  ///< time of its first data
   sim::Time end;
   Bytes bytes;
   int transfers = 1;
+  int tiles = 0;  ///< of these: what passes through a memory that has no room for it
 };
 
 enum class StepKind : std::uint8_t {
@@ -68,7 +69,7 @@ struct StageEvents {
   Cycles cycles;  ///< of the clock of the cores that ran it
   Bytes memory;   ///< highest occupation of L1, or of L2 by a stage of the controller
   std::optional<Watts> power{};     ///< mean, as EnergyRow::power(); absent without energy figures
-  std::vector<StepEvents> steps{};  ///< none of a stage of the controller
+  std::vector<StepEvents> steps{};  ///< a controller's: transfers of external memory
 };
 
 /// A frame that the front end processed.

@@ -32,6 +32,7 @@ void add_transfer(std::vector<TransferEvents>& transfers, const TransferEvents& 
   same->end = transfer.end;
   same->bytes += transfer.bytes;
   same->transfers += transfer.transfers;
+  same->tiles += transfer.tiles;
 }
 
 void add_step(StepEvents& sum, const StepEvents& step) {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -63,7 +64,7 @@ class PerfettoTimeline::Writer {
   void add_camera(const RunResult& run);
   void add_arrival(int frame, std::int64_t arrival_ns, bool dropped, bool late);
   void add_frame(const FrameEvents& frame);
-  void add_slices(const FrameEvents& frame, Cycles shortest);
+  void join_until_it_fits(const std::function<void(Cycles shortest)>& write, Cycles all);
   void add_front_end_slices(const FrameEvents& frame);
   void add_counters(const FrameEvents& frame);
   void add_iteration(const IterationEvents& iteration, const work::Job& job);
@@ -112,8 +113,15 @@ void PerfettoTimeline::Writer::add_tracks() {
   for (int core = 0; core < events().cores; ++core)
     cluster_.cores.push_back(add(fmt::format("core {}", core), number++));
   cluster_.cores.push_back(master);
-  cluster_.to_l1 = add("DMA, L2 to L1", number++);
-  cluster_.to_l2 = add("DMA, L1 to L2", number++);
+  const auto add_transfers = [&](std::string_view name, work::Direction direction) {
+    cluster_.transfers[static_cast<std::size_t>(direction)] = add(name, number++);
+  };
+  add_transfers("DMA, L2 to L1", work::Direction::L2ToL1);
+  add_transfers("DMA, L1 to L2", work::Direction::L1ToL2);
+  if (chip_.controller.external.size > Bytes(0)) {
+    add_transfers("external memory to L2", work::Direction::ExternalToL2);
+    add_transfers("L2 to external memory", work::Direction::L2ToExternal);
+  }
   controller_ = add("controller", number++);
   l1_ = add_counter("L1, peak of the stage", CounterUnit::Bytes);
   l2_ = add_counter("L2, peak of the stage", CounterUnit::Bytes);
@@ -151,21 +159,27 @@ void PerfettoTimeline::Writer::add_camera(const RunResult& run) {
 
 /// Steps that are shorter than the least of 0, 100, 200, 400 … cycles with which it fits are
 /// joined.
-void PerfettoTimeline::Writer::add_frame(const FrameEvents& frame) {
+/// @param all  cycles of which nothing can be joined any more
+void PerfettoTimeline::Writer::join_until_it_fits(const std::function<void(Cycles shortest)>& write,
+                                                  Cycles all) {
   const TrackEventWriter::Mark mark = writer_.mark();
-  add_slices(frame, Cycles(0));
+  write(Cycles(0));
   for (Cycles shortest = kFirstShortest; writer_.size() - mark.bytes > options_.most_bytes;
        shortest = shortest * 2) {
     writer_.rewind(mark);
-    add_slices(frame, shortest);
-    if (shortest > frame.result.cycles) return;  // there is nothing left to be joined
+    write(shortest);
+    if (shortest > all) return;
   }
 }
 
-void PerfettoTimeline::Writer::add_slices(const FrameEvents& frame, Cycles shortest) {
-  add_front_end_slices(frame);
-  CoreSlices cores(cluster_, events().timebase, frame.work_begin, writer_);
-  for (const StageEvents& stage : frame.stages) cores.add(with_short_steps_joined(stage, shortest));
+void PerfettoTimeline::Writer::add_frame(const FrameEvents& frame) {
+  const auto write = [&](Cycles shortest) {
+    add_front_end_slices(frame);
+    CoreSlices cores(cluster_, events().timebase, "cluster", frame.work_begin, writer_);
+    for (const StageEvents& stage : frame.stages)
+      cores.add(with_short_steps_joined(stage, shortest));
+  };
+  join_until_it_fits(write, frame.result.cycles);
 }
 
 void PerfettoTimeline::Writer::add_front_end_slices(const FrameEvents& frame) {
@@ -233,6 +247,14 @@ void PerfettoTimeline::Writer::add_iteration(const IterationEvents& iteration,
       writer_.counter(controller_power_, begin_ns, stage.power->count() * kMilliwatts);
   }
   open_->end_ns = ns(iteration.end);
+  Cycles all;
+  for (const StageEvents& stage : iteration.stages) all += stage.cycles;
+  const auto write = [&](Cycles shortest) {
+    CoreSlices transfers(cluster_, events().timebase, "controller", iteration.begin, writer_);
+    for (const StageEvents& stage : iteration.stages)
+      transfers.add_transfers(with_short_steps_joined(stage, shortest));
+  };
+  join_until_it_fits(write, all);
   if (!iteration.last) return;
   const std::int64_t end_ns = open_->end_ns;
   end_optimisation();

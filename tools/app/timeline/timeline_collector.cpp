@@ -92,14 +92,16 @@ std::vector<StageEvents> TimelineCollector::stages_of(const work::Job& job,
     StageEvents& stage = stages.emplace_back(StageEvents{
         timed.stage, timed.begin, timed.end, timed.cycles, job.stages[i].memory.parallel});
     stage.power = power_in(energy, timed.stage);
-    for (const sim::StepTiming& step : timed.steps) stage.steps.push_back(step_of(step));
+    for (const sim::StepTiming& step : timed.steps)
+      stage.steps.push_back(step_of(step, on_controller ? "controller" : "cluster"));
   }
   return stages;
 }
 
-StepEvents TimelineCollector::step_of(const sim::StepTiming& timing) const {
+StepEvents TimelineCollector::step_of(const sim::StepTiming& timing,
+                                      std::string_view clock) const {
   const auto cycles = [&](sim::Time begin, sim::Time end) {
-    return events_.timebase.clock("cluster").whole_cycles(end - begin);
+    return events_.timebase.clock(clock).whole_cycles(end - begin);
   };
   StepEvents step;
   step.kind = kind_of(*timing.step);
@@ -111,8 +113,11 @@ StepEvents TimelineCollector::step_of(const sim::StepTiming& timing) const {
   if (step.kind == StepKind::Transfer || step.kind == StepKind::Wait) step.transfer = step.cycles;
   if (const auto* fork = std::get_if<work::Fork>(timing.step)) step.name = fork->name;
   if (const auto* transfer = std::get_if<work::Transfer>(timing.step))
-    step.transfers.push_back(
-        {transfer->direction, timing.data.begin, timing.data.end, transfer->bytes});
+    step.transfers.push_back({.direction = transfer->direction,
+                              .begin = timing.data.begin,
+                              .end = timing.data.end,
+                              .bytes = transfer->bytes,
+                              .tiles = transfer->background ? 1 : 0});
   for (const sim::CoreTiming& core : timing.cores) {
     const bool is_master = core.core == events_.cores;
     step.cores.push_back({core.core, core.begin, core.end, cycles(core.begin, core.end),

@@ -29,7 +29,7 @@ class TimelineCollector : public RunObserver {
  private:
   std::vector<StageEvents> stages_of(const work::Job& job, const sim::JobTiming& timing,
                                      bool on_controller);
-  StepEvents step_of(const sim::StepTiming& timing) const;
+  StepEvents step_of(const sim::StepTiming& timing, std::string_view clock) const;
 
   int middle_;
   RunResult job_run_;  ///< a run of one job, for its energy

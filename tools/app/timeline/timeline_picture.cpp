@@ -168,7 +168,10 @@ class Picture {
   }
   double top() const { return kLegendTop + kLegendStep * static_cast<double>(legend_lines_) + 10; }
   double row_top(std::size_t row) const { return top() + kRowStep * static_cast<double>(row); }
-  std::size_t rows() const { return static_cast<std::size_t>(events_.cores) + 5; }
+  bool has_external() const { return run_.chip.controller.external.size > Bytes(0); }
+  std::size_t rows() const {
+    return static_cast<std::size_t>(events_.cores) + (has_external() ? 6 : 5);
+  }
   double bottom() const { return row_top(rows()); }
 
   void find_span();
@@ -187,6 +190,7 @@ class Picture {
   void draw_deadlines(Svg& svg) const;
   void draw_strip(Svg& svg, std::size_t row, const Strip& strip) const;
   void draw_cores(Svg& svg) const;
+  void draw_transfers(Svg& svg, const StageEvents& stage, std::size_t row) const;
   void draw_transfers(Svg& svg) const;
   void draw_controller(Svg& svg) const;
 
@@ -390,16 +394,25 @@ void Picture::draw_cores(Svg& svg) const {
   }
 }
 
+/// @param row  of what goes inwards; what the DMA brings outwards has the next one
+void Picture::draw_transfers(Svg& svg, const StageEvents& stage, std::size_t row) const {
+  for (const StepEvents& step : stage.steps)
+    for (const TransferEvents& transfer : step.transfers)
+      if (const double to = std::min(ms(transfer.end), end_ms_); ms(transfer.begin) < to)
+        draw_block(svg, row + (transfer.direction == work::Direction::L1ToL2 ? 1 : 0),
+                   ms(transfer.begin), to, "", "#5c6670");
+}
+
 void Picture::draw_transfers(Svg& svg) const {
-  const std::size_t row = rows() - 3;
+  const std::size_t row = static_cast<std::size_t>(events_.cores) + 2;
   draw_label(svg, row, "DMA, to L1");
   draw_label(svg, row + 1, "DMA, to L2");
   for (const FrameEvents& frame : events_.frames)
-    for (const StageEvents& stage : frame.stages)
-      for (const StepEvents& step : stage.steps)
-        for (const TransferEvents& transfer : step.transfers)
-          draw_block(svg, row + (transfer.direction == work::Direction::L2ToL1 ? 0 : 1),
-                     ms(transfer.begin), ms(transfer.end), "", "#5c6670");
+    for (const StageEvents& stage : frame.stages) draw_transfers(svg, stage, row);
+  if (!has_external()) return;
+  draw_label(svg, row + 2, "external");
+  for (const IterationEvents& iteration : events_.iterations)
+    for (const StageEvents& stage : iteration.stages) draw_transfers(svg, stage, row + 2);
 }
 
 void Picture::draw_controller(Svg& svg) const {

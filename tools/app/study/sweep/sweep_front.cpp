@@ -21,8 +21,9 @@ constexpr std::size_t kEnergy = 1;  ///< among kObjectives
 
 std::string shown(const SweepOutcome& outcome, std::size_t k) {
   const std::optional<double>& value = outcome.objectives[k];
-  return value ? fmt::format("{:.{}f}", *value * kObjectives[k].scale, kObjectives[k].decimals)
-               : "-";
+  if (!value) return "-";
+  if (kObjectives[k].shown_unit == std::string_view("m")) return metres_text(*value, kObjectives[k].decimals);
+  return fmt::format("{:.{}f}", *value * kObjectives[k].scale, kObjectives[k].decimals);
 }
 
 /// "frame ms".

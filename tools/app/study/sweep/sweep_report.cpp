@@ -243,10 +243,16 @@ Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, Swe
   }
   batch.before = chosen.size() - open.size();
   KnownRuns known;
+  SweepEstimate estimate(open.size(), options.threads, options.progress);
   batch.compute = [&](std::size_t i) {
-    return run_point(resolve(sweep.plan, points[open[i]].settings, sweep.inputs,
-                             fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)),
-                     known);
+    const auto begin = std::chrono::steady_clock::now();
+    RunRecord outcome =
+        run_point(resolve(sweep.plan, points[open[i]].settings, sweep.inputs,
+                          fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)),
+                  known);
+    estimate.take(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    return outcome;
   };
   // In the order of the plan, so that the file has the same bytes however many run at a time. Those
   // that wait for one before them are in the cache if the program is killed.

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <map>
+#include <thread>
 
 #include "sim/base/error.h"
 #include "sim/base/input_file.h"
@@ -70,6 +72,20 @@ SweepStatus sweep_status(const fs::path& folder, const std::vector<SweepPoint>& 
     break;
   }
   return status;
+}
+
+void SweepEstimate::take(double seconds) {
+  constexpr std::size_t kFew = 10;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  least_s_ = taken_ == 0 ? seconds : std::min(least_s_, seconds);
+  if (++taken_ != 2 || points_ < kFew || style_ == ProgressLine::Style::None) return;
+  const unsigned cores = threads_ > 0 ? threads_ : std::max(1u, std::thread::hardware_concurrency());
+  const char* const clear = style_ == ProgressLine::Style::Rewritten ? "\r\x1b[K" : "";
+  const std::string text =
+      fmt::format("{}{} points, {} each: about {} on {} core{}\n", clear, points_,
+                  rough_time(least_s_), rough_time(least_s_ * static_cast<double>(points_) / cores),
+                  cores, cores == 1 ? "" : "s");
+  std::fputs(text.c_str(), stderr);
 }
 
 std::string status_text(const SweepStatus& status, const std::string& plan, double task_seconds) {

@@ -50,8 +50,9 @@ std::string short_text(const TunePoint& point) {
 }
 
 std::string point_text(const TunePoint& point) {
-  std::string text = fmt::format("{} % missed, ATE {} m", percent(point.miss_rate()),
-                                 error_text(point.ate().median, 3));
+  const std::optional<double> error = point.ate().median;
+  std::string text = fmt::format("{} % missed, ATE {}", percent(point.miss_rate()),
+                                 error ? metres(*error, 3) : kDiverged);
   if (const auto power = point.median(&LoopOutcome::power_w))
     text += fmt::format(", {} mW ({}), {} mJ per frame", milli(power, 1), milli_band(power),
                         milli(point.median(&LoopOutcome::frame_j), 3));
