@@ -23,6 +23,7 @@ using soc::Progress;
 using soc::ProgressCallback;
 
 struct WorkRecording;
+class FilmWriter;
 
 /// The times that get bands (range_bands.h).
 enum class TimeBandsOf : std::uint8_t {
@@ -52,6 +53,7 @@ struct RunRequest {
   bool on_one_core = true;             ///< whether jobs are also timed on one core
   RunObserver* observer = nullptr;     ///< sees every job; unused if native
   WorkRecording* recording = nullptr;  ///< gets every job, for a trace; unused if native
+  FilmWriter* film = nullptr;          ///< gets every frame; unused by other workloads
 };
 
 /// @throws InputError as profile_of()
