@@ -64,7 +64,7 @@ TEST_F(Film, HoldsWhatWasSeen) {
   EXPECT_EQ(frame.features[3], std::string("\xff\xff\0\0", 4));
   EXPECT_EQ(frame.features[1] + frame.features[2], "");
   ASSERT_EQ(frame.points.size(), 1u) << "of landmarks that agree or are new";
-  EXPECT_EQ(frame.points[0], (std::array<std::int64_t, 3>{125, -250, 3000}));
+  EXPECT_EQ(frame.points[0], (std::array<std::int64_t, 3>{1250, -2500, 30000}));
 }
 
 TEST_F(Film, OfOtherFramesThanKeyframesHasNoPoints) {

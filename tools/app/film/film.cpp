@@ -60,7 +60,7 @@ void add_points(traces::ByteWriter& out, const vio::FrameReport& report) {
   }
   out.whole(points.size());
   for (const auto& point : points)
-    for (const float metres : point) out.integer(std::lround(100 * metres));
+    for (const float metres : point) out.integer(std::lround(1000 * metres));
 }
 
 }  // namespace

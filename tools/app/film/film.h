@@ -6,7 +6,7 @@
 //   text     for each vio::FeatureState the features, 4 bytes each: x and y, and where the last
 //            keyframe had it, all as 256ths of width and height; 2 for those without a match
 //   count    of map points, then for each three signed whole numbers: x, y, z in the map's frame
-//            [cm]; of keyframes alone
+//            [mm]; of keyframes alone
 #pragma once
 
 #include <array>
@@ -48,7 +48,7 @@ class FilmWriter {
 struct FilmFrame {
   std::string image;
   std::array<std::string, kFeatureStates.size()> features;
-  std::vector<std::array<std::int64_t, 3>> points;  ///< [cm]
+  std::vector<std::array<std::int64_t, 3>> points;  ///< [mm]
 };
 
 /// @param memory  that the film may take

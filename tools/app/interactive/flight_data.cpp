@@ -107,13 +107,12 @@ std::string film_text(const std::vector<FilmFrame>& film, const traces::Similari
       features[kFeatureStates[i]] = base64(frame.features[i]);
     Json points = Json::array();
     for (const auto& [x, y, z] : frame.points) {
-      const Eigen::Vector3d cm =
-          to_path *
-          (Eigen::Vector3d(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)) /
-           100) *
-          100;
-      points.push_back(std::llround(cm.x()));
-      points.push_back(std::llround(cm.y()));
+      const Eigen::Vector3d metres = Eigen::Vector3d(static_cast<double>(x), static_cast<double>(y),
+                                                     static_cast<double>(z)) /
+                                     1000;
+      const Eigen::Vector3d aligned = to_path * metres;
+      for (const double coordinate : {aligned.x(), aligned.y()})
+        points.push_back(std::llround(1000 * coordinate));
     }
     list.push_back(
         {{"image", base64(frame.image)}, {"features", features}, {"points", std::move(points)}});

@@ -28,6 +28,10 @@ function themeDefaults() {
 /** Lines at values of an axis: [{axis: "x"|"y", value, label}]. */
 const limitLines = {
   id: 'limitLines',
+  /** Room for labels above the bars. */
+  beforeInit(chart, _, options) {
+    if ((options.lines || []).some(({axis}) => axis === 'x')) chart.options.layout = {padding: {top: 16}};
+  },
   afterDatasetsDraw(chart, _, options) {
     const {ctx, chartArea: area, scales} = chart;
     for (const line of options.lines || []) {
@@ -49,11 +53,14 @@ const limitLines = {
       ctx.stroke();
       ctx.font = `600 11px ${Chart.defaults.font.family}`;
       const width = ctx.measureText(line.label).width;
-      if (line.axis === 'y')
-        ctx.fillText(line.label, area.right - width - 4, at - 5);
-      else
-        ctx.fillText(
-            line.label, Math.max(area.left, Math.min(at - width - 5, area.right)), area.top + 10);
+      const [x, y] = line.axis === 'y' ?
+          [area.right - width - 4, at - 5] :
+          [Math.max(area.left, Math.min(at - width / 2, area.right - width)), area.top - 5];
+      ctx.setLineDash([]);
+      ctx.lineWidth = 4;
+      ctx.strokeStyle = style('--card');
+      ctx.strokeText(line.label, x, y);
+      ctx.fillText(line.label, x, y);
       ctx.restore();
     }
   },

@@ -18,7 +18,7 @@ function flightPath(path, film, state, onpick) {
     const keyframes =
         film.slice(0, state.frame + 1).filter(({points}) => points.length > 0).slice(-kShownKeyframes);
     return keyframes.flatMap(({points}) => Array.from(
-        {length: points.length / 2}, (_, i) => ({x: points[2 * i] / 100, y: points[2 * i + 1] / 100})));
+        {length: points.length / 2}, (_, i) => ({x: points[2 * i] / 1e3, y: points[2 * i + 1] / 1e3})));
   }
   function marks() {
     const list = [mark('here', at('estimate'), style('--accent'), 7, -2)];

@@ -71,8 +71,14 @@ class InteractivePage {
     document.getElementById('content').classList.toggle('stale', Boolean(text));
   }
 
+  tellFrame() {
+    const {facts, words} = this.data.flight;
+    const {latencies, period_ns, frame} = this.state;
+    this.parts.seen.textContent = frameSentence(facts, words, frame, latencies[frame], period_ns);
+  }
   /** Of the flight that was timed last. */
   showAnswer() {
+    this.tellFrame();
     this.parts.verdict.replaceChildren(verdictsOf(this.now));
     this.parts.tiles.replaceChildren(
         answerTiles(this.now, this.recorded, this.area, this.recordedArea));
@@ -197,9 +203,7 @@ class InteractivePage {
         sentence(this.setting, this.bars.now, this.bars.recorded, this.data.mechanisms) :
         '';
     for (const figure of [this.stages, this.gantt, ...this.views]) figure.redraw();
-    const {facts, words} = this.data.flight;
-    this.parts.seen.textContent = frameSentence(
-        facts, words, this.setting.frame, this.state.latencies[this.setting.frame], this.state.period_ns);
+    this.tellFrame();
     this.rest = setTimeout(() => this.rested(runs), kRest);
     this.latency.redraw();
     this.knobs.show();
@@ -212,6 +216,7 @@ class InteractivePage {
     const period_ns = this.setting.period_ns;
     const latencies = [];
     if (runs) Object.assign(this.state, {latencies, period_ns});
+    this.tellFrame();
     this.flights.start(runs ? this.setting.lines() : null, this.knobs.questions(), {
       frames: (frames) => {
         this.arrived(latencies, frames);

@@ -59,7 +59,7 @@ function knobView(setting, knob, i, changed) {
   });
   const others = knob.values.filter((_, n) => n !== knob.recorded).join(',');
   const fixed = knob.fixed ?
-      [` ${knob.fixed} `, element('code', {}, `leviosim whatif ${setting.data.run} ${knob.path}=${others}`)] :
+      [`. ${knob.fixed} `, element('code', {}, `leviosim whatif ${setting.data.run} ${knob.path}=${others}`)] :
       [];
   let paid = null;
   function show(price = paid) {
