@@ -69,12 +69,15 @@ void number_frames(Json& path, const Json& stamps) {
   std::map<std::int64_t, int> frames;
   for (const Json& stamp : stamps)
     frames.emplace(stamp.get<std::int64_t>(), static_cast<int>(frames.size()));
+  Json numbers = Json::array(), seconds = Json::array();
   for (const Json& stamp : path.at("t_ns")) {
     const auto t_ns = stamp.get<std::int64_t>();
     const auto frame = frames.lower_bound(t_ns);
-    path["frame"].push_back(frame == frames.end() ? frames.size() - 1 : frame->second);
-    path["t_s"].push_back(static_cast<double>(t_ns - frames.begin()->first) * 1e-9);
+    numbers.push_back(frame == frames.end() ? static_cast<int>(frames.size()) - 1 : frame->second);
+    seconds.push_back(static_cast<double>(t_ns - frames.begin()->first) * 1e-9);
   }
+  path["frame"] = std::move(numbers);
+  path["t_s"] = std::move(seconds);
   path.erase("t_ns");
 }
 
@@ -107,9 +110,9 @@ std::string film_text(const std::vector<FilmFrame>& film, const traces::Similari
       features[kFeatureStates[i]] = base64(frame.features[i]);
     Json points = Json::array();
     for (const auto& [x, y, z] : frame.points) {
-      const Eigen::Vector3d metres = Eigen::Vector3d(static_cast<double>(x), static_cast<double>(y),
-                                                     static_cast<double>(z)) /
-                                     1000;
+      const Eigen::Vector3d metres =
+          Eigen::Vector3d(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)) /
+          1000;
       const Eigen::Vector3d aligned = to_path * metres;
       for (const double coordinate : {aligned.x(), aligned.y()})
         points.push_back(std::llround(1000 * coordinate));
