@@ -30,6 +30,7 @@ constexpr std::array kKinds{
     InputKindInfo{InputKind::sensor, "a sensor.yaml", 1 * kMiB},
     InputKindInfo{InputKind::table, "a table", 256 * kMiB},
     InputKindInfo{InputKind::image, "an image", 64 * kMiB},
+    InputKindInfo{InputKind::film, "a film", 512 * kMiB},
     InputKindInfo{InputKind::work_trace, "a work trace", 4096 * kMiB},
     InputKindInfo{InputKind::cached_result, "a cached result", 16 * kMiB},
     InputKindInfo{InputKind::run_file, "a file of a run folder", 64 * kMiB},

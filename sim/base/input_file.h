@@ -16,6 +16,7 @@ enum class InputKind {
   sensor,
   table,
   image,
+  film,
   work_trace,
   cached_result,
   run_file,

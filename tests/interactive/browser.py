@@ -99,6 +99,13 @@ class Page:
             raise RuntimeError(answer["exceptionDetails"]["exception"].get("description"))
         return answer["result"].get("value")
 
+    def press(self, key, code=None, number=0):
+        """A key with what has the focus."""
+        text = {"text": key} if len(key) == 1 else {}
+        for kind in ("keyDown", "keyUp"):
+            self.ask("Input.dispatchKeyEvent", type=kind, key=key, code=code or key,
+                     windowsVirtualKeyCode=number, **(text if kind == "keyDown" else {}))
+
     def wait(self, condition, seconds=120):
         """Until an expression holds."""
         script = f"""new Promise((done) => {{

@@ -4,8 +4,11 @@ statistic of 50 settings as `leviosim replay` does, bit for bit, and the page an
     page_test.py LEVIOSIM        exit status 77 where the engine or the browser is missing
 """
 
+import csv
 import json
 import os
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -14,6 +17,7 @@ import unittest
 from browser import BROWSER, Page
 
 LEVIOSIM = ""
+DATA = os.path.join(os.path.dirname(__file__), "../../../shared/data")
 # Two or three values of each resource, pairs of them, and accelerators; cores are as recorded.
 SINGLE = {
     "cluster.fpu.units": ["1", "2", "8"], "cluster.fpu.dividers": ["2", "4"],
@@ -54,6 +58,27 @@ def is_band(name):
     return name.endswith((".low", ".high")) and not name.startswith(("energy.", "area."))
 
 
+def canvas(title):
+    return f"document.querySelector('canvas[aria-label^=\"{title}\"]')"
+
+
+def chart(title):
+    return f"Chart.getChart({canvas(title)})"
+
+
+def click(title, dataset, index):
+    """Statements that click on an element of a chart."""
+    return f"""const where = {canvas(title)}, at = where.getBoundingClientRect();
+        const {{x, y}} = {chart(title)}.getDatasetMeta({dataset}).data[{index}];
+        where.dispatchEvent(new MouseEvent('click', {{bubbles: true, clientX: at.left + x,
+                                                     clientY: at.top + y}}));"""
+
+
+def column(file, name):
+    with open(file, encoding="utf-8") as text:
+        return [row[name] for row in csv.DictReader(text)]
+
+
 class InteractivePage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -63,7 +88,7 @@ class InteractivePage(unittest.TestCase):
             data = cls.path("flight-" + profile)
             program("synth", "--out", data, "--duration", seconds)
             program("run", "--profile", profile, "--data", data, "--record", "--quiet",
-                    "--out", cls.path(profile))
+                    "--out", cls.path(profile), *(["--film"] if profile == "next" else []))
             program("report", cls.path(profile), "--interactive", "-o", cls.page(profile))
 
     @classmethod
@@ -181,8 +206,7 @@ class InteractivePage(unittest.TestCase):
         page = self.opened("next")
         before = page.run("document.querySelector('.tiles').textContent")
         page.run("delete document.body.dataset.ready; document.getElementById('knob-0').focus()")
-        page.ask("Input.dispatchKeyEvent", type="keyDown", key="Home", code="Home",
-                 windowsVirtualKeyCode=36)
+        page.press("Home", number=36)
         page.wait("document.body.dataset.ready")
         after = page.run("document.querySelector('.tiles').textContent")
         self.assertNotEqual(before, after)
@@ -235,10 +259,7 @@ class InteractivePage(unittest.TestCase):
     def test_a_click_on_the_latencies_shows_that_frame_in_time_on_both_chips(self):
         page = self.opened("levio", "cluster.fpu.units=1&frame=2")
         page.run("""(() => { delete document.body.dataset.ready;
-            const canvas = document.querySelector('canvas'), at = canvas.getBoundingClientRect();
-            const {x, y} = Chart.getChart(canvas).getDatasetMeta(0).data[9];
-            canvas.dispatchEvent(new MouseEvent('click', {bubbles: true, clientX: at.left + x,
-                                                          clientY: at.top + y})); })()""")
+            %s })()""" % click("Latency of each frame", 0, 9))
         page.wait("document.body.dataset.ready")
         self.assertIn("frame=9", page.run("location.hash"))
         outcomes = page.run("[window.page.bars.recorded, window.page.bars.now]")
@@ -253,9 +274,156 @@ class InteractivePage(unittest.TestCase):
             self.assertLessEqual(ends[-1], outcome["statistics"]["frame.time.mean"])
             self.assertGreater(ends[-1], 0.9 * outcome["statistics"]["frame.time.mean"])
         self.assertGreater(ends[1], ends[0])  # one FPU takes longer
-        drawn = page.run("Chart.getChart(document.querySelectorAll('canvas')[1]).data.labels")
+        drawn = page.run(chart("The selected frame in time") + ".data.labels")
         self.assertIn("cluster, recorded", drawn)
         self.assertIn("cluster, now", drawn)
+
+    # What all views show of the selected frame.
+    FRAME = """(() => { const p = window.page, film = document.querySelector('.film canvas');
+        return {set: p.setting.frame, gantt: p.bars.number, box: Number(p.parts.frame.value),
+                said: Number(/^Frame (\\d+)/.exec(p.parts.seen.textContent)[1]),
+                film: Number(/^Frame (\\d+)/.exec(film.getAttribute('aria-label'))[1])}; })()"""
+
+    def test_space_plays_arrows_step_and_all_views_show_that_frame(self):
+        page = self.opened("next", "frame=5")
+        def shown(number):
+            page.wait(f"Object.values({self.FRAME}).every((frame) => frame === {number})", 10)
+        shown(5)
+        page.press("ArrowRight", number=39)
+        shown(6)
+        page.press("ArrowLeft", number=37)
+        page.press("ArrowLeft", number=37)
+        shown(4)
+        page.press(" ", "Space", 32)
+        page.wait("window.page.setting.frame > 12", 20)
+        self.assertIn("Stop", page.run("window.page.player.button.textContent"))
+        page.press(" ", "Space", 32)
+        stopped = page.run("window.page.setting.frame")
+        page.run("new Promise((done) => setTimeout(done, 400))")
+        shown(stopped)
+        page.press(" ", "Space", 32)
+        page.wait("!window.page.player.timer", 20)  # to the end of the flight
+        shown(59)
+        page.press(" ", "Space", 32)  # and from its begin again
+        page.wait("window.page.setting.frame < 30 && window.page.setting.frame > 2", 20)
+        self.assertEqual(page.complaints, [])
+
+    def test_keys_of_sliders_stay_theirs(self):
+        page = self.opened("next", "frame=5")
+        page.run("document.getElementById('knob-0').focus()")
+        page.press("ArrowRight", number=39)
+        page.press(" ", "Space", 32)
+        self.assertEqual(page.run("window.page.setting.frame"), 5)
+        self.assertFalse(page.run("Boolean(window.page.player.timer)"))
+        self.assertEqual(len(page.run("window.page.setting.lines()")), 1)
+
+    def test_a_click_on_the_path_selects_the_frame_that_was_there(self):
+        for profile in ("next", "levio"):  # with a film and without
+            page = self.opened(profile, "frame=0")
+            title = "Trajectory from above"
+            estimate = page.run(chart(title) + ".data.datasets.findIndex((d) => d.label === 'estimate')")
+            page.run("(() => { delete document.body.dataset.ready; %s })()" % click(title, estimate, 17))
+            page.wait("document.body.dataset.ready")
+            frame = page.run("window.page.setting.frame")
+            x, y = page.run("""(() => { const path = window.page.data.flight.path;
+                const at = path.frame.indexOf(window.page.setting.frame);
+                const far = (i) => Math.hypot(path.estimate_x_m[i] - path.estimate_x_m[17],
+                                              path.estimate_y_m[i] - path.estimate_y_m[17]);
+                return [far(at), far(0)]; })()""")
+            self.assertLess(x, 1e-3, frame)
+
+    def test_the_film_shows_the_features_that_the_run_counted(self):
+        page = self.opened("next", "frame=0")
+        number = [int(n) for n in column(os.path.join(self.path("next"), "frames.csv"), "features")]
+        for frame in (0, 21, 59):
+            page.run(f"window.page.select({frame})")
+            page.wait(f"{self.FRAME}.film === {frame}", 10)
+            label = page.run("document.querySelector('.film canvas').getAttribute('aria-label')")
+            self.assertEqual(sum(int(n) for n in re.findall(r"(\d+) (?:only|matched|landmark,|new)", label)),
+                             number[frame], label)
+        drawn = page.run("""(() => { const canvas = document.querySelector('.film canvas');
+            const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+            let grey = 0, coloured = 0;
+            for (let i = 0; i < data.length; i += 4)
+              if (Math.abs(data[i] - data[i + 2]) < 8) ++grey; else ++coloured;
+            return [grey, coloured]; })()""")
+        self.assertGreater(drawn[0], 10000)
+        self.assertGreater(drawn[1], 500)
+        points = page.run(chart("Trajectory from above") +
+                          ".data.datasets.find((d) => d.label === 'map points').data.length")
+        self.assertGreater(points, 50)
+
+    def test_without_a_truth_the_path_is_the_estimates(self):
+        folder = self.path("no-truth")
+        shutil.copytree(self.path("flight-levio"), folder)
+        shutil.rmtree(os.path.join(folder, "mav0", "state_groundtruth_estimate0"))
+        program("run", "--profile", "levio", "--data", folder, "--record", "--quiet", "--out",
+                self.path("blind"))
+        program("report", self.path("blind"), "--interactive", "-o", self.page("blind"))
+        page = self.opened("blind", "frame=3")
+        labels = page.run(chart("Trajectory from above") + ".data.datasets.map((d) => d.label)")
+        self.assertNotIn("here, truth", labels)
+        page.press(" ", "Space", 32)
+        page.wait("window.page.setting.frame === 19", 20)
+        self.assertEqual(page.complaints, [])
+
+    def test_what_is_no_film_of_the_run_is_refused_in_a_line(self):
+        def refused(folder):
+            words = program("report", folder, "--interactive", "-o", self.path("none.html"),
+                            status=2).stderr
+            self.assertEqual(words.strip().count("\n"), 0, words)
+            self.assertIn("flight.film", words)
+            return words
+        folder = self.path("hostile")
+        shutil.copytree(self.path("next"), folder)
+        film = os.path.join(folder, "flight.film")
+        with open(film, "rb") as file:
+            whole = file.read()
+        for bytes_ in (whole[:-7], b"", b"LEVIOFM\n" + whole[8:3000], os.urandom(1000)):
+            with open(film, "wb") as file:
+                file.write(bytes_)
+            refused(folder)
+        with open(film, "wb") as file:  # whole sections, too few
+            file.write(whole[:16] + whole[16:16 + 12 + int.from_bytes(whole[16:20], "little")])
+        self.assertIn("has 1 frames; expected 60", refused(folder))
+        self.assertFalse(os.path.exists(self.path("none.html")))
+
+    def test_other_numbers_of_cores_are_told_with_the_command(self):
+        page = self.opened("next")
+        slider = "[...document.querySelectorAll('.knob')].find((k) => k.textContent.includes('cluster.workers'))"
+        self.assertTrue(page.run(f"{slider}.querySelector('input').disabled"))
+        words = page.run(f"[...{slider}.querySelectorAll('code')].at(-1).textContent").split()
+        self.assertEqual(words[:3], ["leviosim", "whatif", self.path("next")])
+        self.assertEqual(words[3], "cluster.workers=1,2,4,16,32,64")
+
+    def test_twenty_values_of_a_slider_are_timed_while_it_moves(self):
+        page = self.opened("levio")
+        seconds = page.run("""(() => { const slider = document.getElementById('knob-0');
+            const began = performance.now();
+            for (let i = 0; i < 20; ++i) {
+              slider.value = i;
+              slider.dispatchEvent(new Event('input'));
+            }
+            return (performance.now() - began) / 1e3; })()""")
+        self.assertEqual(page.run("window.page.setting.at[0]"), 19)
+        print(f"{20 / seconds:.0f} updates a second of levio's selected frame", file=sys.stderr)
+
+    def test_pages_of_a_real_flight_have_their_sizes(self):
+        data = os.path.join(os.environ.get("LEVIOSIM_DATA", DATA), "euroc", "MH_01_easy_t05_t20")
+        if not os.path.isdir(data):
+            self.skipTest(f"{data} is not there")
+        for profile, most in (("next", 2.5e6), ("levio", 9e6)):
+            sizes = []
+            for film in ([], ["--film"]):
+                run = self.path(f"real-{profile}{len(film)}")
+                program("run", "--profile", profile, "--data", data, "--record", *film, "--quiet",
+                        "--out", run)
+                program("report", run, "--interactive", "-o", self.page(run))
+                sizes.append(os.path.getsize(self.page(run)))
+            print(f"{profile}: {sizes[0] / 1e6:.2f} MB, film {(sizes[1] - sizes[0]) / 1e6:.2f} MB",
+                  file=sys.stderr)
+            self.assertLessEqual(sizes[0], most)
+            self.assertLessEqual(sizes[1] - sizes[0], 1.5e6)
 
     def test_it_is_drawn_without_errors_requests_or_overflow(self):
         for width in (1280, 390):
@@ -264,7 +432,7 @@ class InteractivePage(unittest.TestCase):
                     page = self.opened("levio", "cluster.fpu.units=1", width=width, dark=dark)
                     self.assertEqual(page.complaints, [])
                     self.assertLessEqual(page.run("document.documentElement.scrollWidth"), width)
-                    self.assertEqual(page.run("document.querySelectorAll('canvas').length"), 3)
+                    self.assertEqual(page.run("document.querySelectorAll('canvas').length"), 4)
                     self.assertEqual(page.run("document.querySelectorAll('.verdict').length"), 1)
                     ink = page.run("getComputedStyle(document.documentElement).getPropertyValue('--ink').trim()")
                     self.assertEqual(ink, "#e4e9ef" if dark else "#1b2430")

@@ -47,6 +47,34 @@ TEST_F(ReplayCommand, LeavesTheFolderOfTheRun) {
   EXPECT_EQ(before, after);
 }
 
+TEST_F(ReplayCommand, AFilmIsOneFileMoreAndChangesNoOther) {
+  record();
+  const ProgramResult result = program(
+      {"run", "--data", path("flight"), "--out", path("filmed"), "--record", "--film", "--quiet"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("film: "), std::string::npos) << result.out;
+  auto with = traces::testing::contents(folder_ / "filmed");
+  auto without = traces::testing::contents(folder_ / "run");
+  EXPECT_GT(with["flight.film"].size(), 20u * 1000);
+  EXPECT_LT(with["flight.film"].size(), 20u * 5000) << "300 frames within 1.5 MB";
+  EXPECT_EQ(with.erase("flight.film"), 1u);
+  for (const char* names_command : {"manifest.json", ".leviosim-files"}) {
+    with.erase(names_command);
+    without.erase(names_command);
+  }
+  EXPECT_EQ(with, without);
+}
+
+TEST_F(ReplayCommand, RefusesAFilmWithoutWorkOrFeatures) {
+  const auto run = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"run", "--film", "--out", path("o"), "--data", "x"});
+    return program(words);
+  };
+  expect_refused(run({}), {"--film", "--record"});
+  expect_refused(run({"--native"}), {"--film", "--native"});
+  expect_refused(run({"--record", "--profile", "flow"}), {"--film", "'flow'"});
+}
+
 TEST_F(ReplayCommand, TakesThePlatformOfTheRecordingByDefault) {
   record();
   ASSERT_EQ(program({"replay", path("run/work.trace"), "--out", path("again"), "--quiet"}).status,

@@ -1,10 +1,12 @@
 // `leviosim run`: the workload on a chip, or natively, over recorded or synthetic data.
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <memory>
 
 #include "tools/app/budget/gate.h"
 #include "tools/app/cli/outputs.h"
+#include "tools/app/film/film.h"
 #include "tools/app/html_report/report_option.h"
 #include "tools/app/record/record.h"
 #include "tools/app/run/recording_source.h"
@@ -42,17 +44,29 @@ void run(RunCommandOptions options, const Arguments& words) {
     if (trace) trace->add(bytes);
   });
   if (options.record) request.recording = &recording;
+  std::optional<outputs::Spool> pictures;
+  std::optional<FilmWriter> film;
+  if (options.film) {
+    pictures.emplace(out.spool(kFilmFile));
+    film.emplace([&](std::string_view bytes) { pictures->add(bytes); });
+    request.film = &*film;
+  }
   request.time_bands = TimeBandsOf::team;
   if (timeline) request.observer = &timeline->observer();
   const auto result = std::make_shared<const RunResult>(simulate_with_progress(request, style));
   const RunFolder folder =
       run_folder(out.shown_path(), result, manifest,
                  request.native ? std::string() : platform::to_yaml(request.platform));
-  publish(out, run_printout(options, *result, folder.record), [&] {
+  const std::string remarks =
+      film ? fmt::format("film: {:.2g} MB of images and features, for report --interactive\n",
+                         static_cast<double>(film->size().count()) * 1e-6)
+           : std::string();
+  publish(out, run_printout(options, *result, folder.record, remarks), [&] {
     write_run_folder(out, folder);
     if (!options.record) return;
     work_trace_of(std::move(recording), options, request, manifest);
     out.write(kWorkTraceFile, trace->content());
+    if (pictures) out.write(kFilmFile, pictures->content());
   });
   if (timeline) timeline->publish(*result, !options.json);
   report_and_check(folder, page, gate, !options.json);

@@ -30,7 +30,7 @@ flags=(--target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -fexceptions -ffp-contract=o
 compile() { # compile NAME
   local source
   for source in ${pieces[$1]}; do echo "#include \"$root/$source\""; done >"$work/$1.cpp"
-  ${CLANG:-clang++-14} "${flags[@]}" -c "$work/$1.cpp" -o "$work/$1.o"
+  ${LAUNCHER:-} "${CLANG:-clang++-14}" "${flags[@]}" -c "$work/$1.cpp" -o "$work/$1.o"
 }
 running=0
 for name in "${!pieces[@]}"; do

@@ -15,7 +15,7 @@ file(GLOB_RECURSE engine_sources CONFIGURE_DEPENDS
 set(page_engine ${CMAKE_CURRENT_BINARY_DIR}/engine.gz)
 add_custom_command(
   OUTPUT ${page_engine}
-  COMMAND ${CMAKE_COMMAND} -E env CLANG=${WASM_CLANG}
+  COMMAND ${CMAKE_COMMAND} -E env CLANG=${WASM_CLANG} LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
           ${CMAKE_SOURCE_DIR}/tools/wasm/build.sh ${CMAKE_CURRENT_BINARY_DIR}/engine.wasm
   COMMAND ${GZIP} --best --no-name --stdout ${CMAKE_CURRENT_BINARY_DIR}/engine.wasm > ${page_engine}
   DEPENDS ${engine_sources}

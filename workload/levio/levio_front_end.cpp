@@ -24,6 +24,7 @@ template <class P>
 FrameReport LevioFrontEnd<P>::process(const FrameInput& input) {
   const work::Arena::Frame memory(state_.machine.local());
   FrameReport report;
+  if (input.wants_features) report.seen.emplace();
   Frame<P> frame;
   take_image(input, state_);
   inertial_.integrate(input);

@@ -5,6 +5,7 @@
 #include "workload/next/feature_alignment.h"
 #include "workload/next/pose_refinement.h"
 #include "workload/vio/frame_pose.h"
+#include "workload/vio/seen_features.h"
 #include "workload/vio/stages.h"
 #include "workload/vision/guided_matcher.h"
 #include "workload/vision/patch_alignment.h"
@@ -153,6 +154,7 @@ std::optional<Pose<P>> search_landmarks(const FrontEndState<P>& state, const Fra
     return std::nullopt;
   report.source = PoseSource::Tracked;
   keep_inliers(frame, found.matches, inliers);
+  note_inliers_on_host(frame, found.matches, inliers, report);
   return inverse(refined.T_camera_world);
 }
 

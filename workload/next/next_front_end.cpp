@@ -31,6 +31,7 @@ template <class P>
 FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   const work::Arena::Frame memory(state_.machine.local());
   FrameReport report;
+  if (input.wants_features) report.seen.emplace();
   TrackedFrame<P> frame;
   frame.dt = input.dt;
   take_image(input, state_);

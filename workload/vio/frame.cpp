@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "workload/vio/seen_features.h"
 #include "workload/vio/stages.h"
 #include "workload/vision/strip_extractor.h"
 
@@ -53,6 +54,7 @@ void complete(const FrontEndState<P>& state, const Frame<P>& frame, FrameReport&
   report.landmarks = work::value(state.graph.landmark_count());
   report.state = static_cast<int>(state_of(report.source));
   static_cast<CameraPose&>(report) = plain(frame.T_world_camera);
+  note_features_on_host(state, frame, report);
 }
 
 #define LEVIOSIM_INSTANTIATE(P)                                   \

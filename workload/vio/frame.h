@@ -54,7 +54,7 @@ void forget_landmarks(const Frame<P>& frame);
 template <class P>
 CameraPose plain(const Pose<P>& T_world_camera);
 
-/// What the frame came to, as plain numbers.
+/// What the frame came to, as plain numbers, with its features where they are asked for.
 template <class P>
 void complete(const FrontEndState<P>& state, const Frame<P>& frame, FrameReport& report);
 

@@ -9,6 +9,7 @@
 #include "workload/levio/geometry/pose_recovery.h"
 #include "workload/levio/vision/levio_matcher.h"
 #include "workload/vio/keyframe_pose.h"
+#include "workload/vio/seen_features.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {
@@ -130,6 +131,7 @@ std::optional<Pose<P>> pose_from_landmarks(const FrontEndState<P>& state,
   const levio::EpnpResult<P> result = levio::estimate_pose_epnp<P>(
       state.machine, matches, CameraConstants<P>(state.rig.camera), random, profile.epnp);
   report.inliers = result.inliers;
+  note_reprojections_on_host(state, frame, result.T_camera_world, report);
   const bool supported = result.ok && result.inliers >= profile.min_epnp_inliers;
   report.source = supported ? PoseSource::Epnp : PoseSource::Predicted;
   return supported ? inverse(result.T_camera_world) : inertial.predicted_pose();

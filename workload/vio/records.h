@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "workload/math/pinhole_camera.h"
@@ -24,6 +25,7 @@ struct FrameInput {
   int height;
   float dt;  ///< since the frame before [s]; 0 for the first
   std::vector<ImuInput> imu;
+  bool wants_features = false;  ///< the report shall hold them
 };
 
 /// Camera and its place on the body.
@@ -46,8 +48,25 @@ struct EarlierPose : CameraPose {
   int frames_ago = 0;  ///< frames processed since then
 };
 
+/// What became of a feature.
+enum class FeatureState : std::uint8_t {
+  Detected,  ///< nothing was found like it
+  Matched,   ///< with a feature of the last keyframe
+  Agrees,    ///< shows a landmark where the pose puts it
+  Rejected,  ///< looks like a landmark that is elsewhere
+  New        ///< of which a landmark was made with this frame
+};
+
+struct SeenFeature {
+  FeatureState state = FeatureState::Detected;
+  float x = 0, y = 0;                ///< [px]
+  float x_before = 0, y_before = 0;  ///< in the last keyframe, or as x and y without a match [px]
+  std::array<float, 3> p_world{};    ///< of the landmark that it agrees with, or that is new [m]
+};
+
 struct FrameReport : FrameFacts, CameraPose {
   std::vector<EarlierPose> earlier;
+  std::optional<std::vector<SeenFeature>> seen;  ///< where FrameInput::wants_features
 };
 
 }  // namespace leviosim::vio

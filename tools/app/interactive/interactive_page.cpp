@@ -12,6 +12,7 @@
 #include "sim/base/yaml_document.h"
 #include "sim/chip/account.h"
 #include "tools/app/html_report/page.h"
+#include "tools/app/interactive/flight_data.h"
 #include "tools/app/interactive/interactive_parts.h"
 #include "tools/app/interactive/knobs.h"
 #include "tools/app/interactive/packing.h"
@@ -48,8 +49,9 @@ Json json_of(const base::YamlNode& node) {
 /// In the order in which they use each other.
 std::string interactive_scripts() {
   std::string text;
-  for (const char* name : {"replay_engine", "flight", "setting", "knobs", "answer", "latency",
-                           "stage_bars", "frame_gantt", "search", "interactive_main"})
+  for (const char* name :
+       {"replay_engine", "flight", "setting", "knobs", "answer", "latency", "stage_bars",
+        "frame_gantt", "film", "flight_path", "player", "search", "interactive_main"})
     text += interactive_part(name);
   return text;
 }
@@ -87,6 +89,7 @@ std::string interactive_page(const std::string& run, Bytes memory) {
   platform::PlatformFile platform(file.string(), info.platform_yaml);
   const platform::ResolvedPlatform chip = platform.resolve({});
 
+  FlightData flight = flight_data(folder, trace.frames(), memory);
   Json data =
       report_json(fmt::format("What if: {} on {}", info.profile, info.platform), Json::array());
   data["interactive"] = {{"run", shell_word(run)},
@@ -98,12 +101,14 @@ std::string interactive_page(const std::string& run, Bytes memory) {
                          {"knobs", knobs_json(platform.schema(), chip, info.frame_period_ns)},
                          {"switches", switches_json(chip)},
                          {"mechanisms", mechanisms_json()},
+                         {"flight", std::move(flight.flight)},
                          {"chip", json_of(base::parse_yaml(info.platform_yaml))}};
   const std::string plain = traces::plain_file(trace, sim::code_of(chip.config));
   return html_page(
       data, {interactive_scripts(),
              fmt::format("<style>\n{}</style>\n", interactive_part("interactive")) +
-                 block("engine", interactive_part("engine")) + block("trace", gzipped(plain)),
+                 block("engine", interactive_part("engine")) + block("trace", gzipped(plain)) +
+                 (flight.film.empty() ? "" : block("film", gzipped(flight.film))),
              " 'wasm-unsafe-eval'; worker-src blob:"});
 }
 

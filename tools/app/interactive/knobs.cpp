@@ -16,6 +16,8 @@ enum class Steps {
   even,     ///< from a fifth to one and a half of it
   supply    ///< what the chip's supply can be set to
 };
+/// Whose other values are not in recorded work.
+constexpr std::string_view kCores = "cluster.workers";
 struct KnobRow {
   std::string_view path;
   Steps steps = Steps::doubled;
@@ -24,7 +26,7 @@ struct KnobRow {
 constexpr std::array kKnobs{KnobRow{"cluster.clock", Steps::even},
                             KnobRow{"controller.clock", Steps::even},
                             KnobRow{"supply.voltage", Steps::supply},
-                            KnobRow{"cluster.workers"},
+                            KnobRow{kCores},
                             KnobRow{"cluster.fpu.units"},
                             KnobRow{"cluster.fpu.dividers"},
                             KnobRow{"cluster.l1.size"},
@@ -78,6 +80,10 @@ Json knob_json(const platform::Field& field, const platform::Parameter& paramete
             {"help", field.description},
             {"unit", parameter.unit},
             {"values", Json::array()}};
+  if (field.path == kCores)
+    knob["fixed"] =
+        "A recording holds the work as it was divided, with as many hypotheses and tiles as there "
+        "were cores. For others the flight is computed anew:";
   for (const double value : values_of(steps, recorded, supply)) {
     if (!is_allowed(field, value, factor)) continue;
     if (value == recorded) knob["recorded"] = knob["values"].size();

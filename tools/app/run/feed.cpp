@@ -61,7 +61,9 @@ Feed::Feed(const RunRequest& request)
       frames_(camera_frames(request, data_)),
       rate_hz_(request.camera && request.camera->fps ? *request.camera->fps : data_.camera.rate_hz),
       images_(data_, request.image_size, request.pictures),
-      rig_(make_rig(data_.camera, images_.intrinsics(), rate_hz_)) {}
+      rig_(make_rig(data_.camera, images_.intrinsics(), rate_hz_)) {
+  input_.wants_features = request.film != nullptr;
+}
 
 /// Read while the frame before was worked on, if no frame was dropped since that was not dropped
 /// before: what comes next is taken to be as far away as the last one was.

@@ -10,6 +10,7 @@
 #include "platform_models/loader/compiled_code.h"
 #include "sim/base/error.h"
 #include "sim/chip/accelerator.h"
+#include "tools/app/film/film.h"
 #include "tools/app/result/summary.h"
 #include "tools/app/run/feed.h"
 #include "traces/datasets/dataset.h"
@@ -122,6 +123,7 @@ std::vector<StageResult> named_stages(const std::vector<vio::StageName>& names) 
 LiveSource::LiveSource(const RunRequest& request)
     : profile_(profile_of(request)),
       evaluate_(request.evaluate),
+      film_(request.film),
       feed_(request),
       cluster_(cluster_machine(request, profile_.l1_alignment, l1_of(request, profile_))),
       controller_(controller_machine(request, request.platform.config.l2.size)),
@@ -140,7 +142,9 @@ bool LiveSource::begin_frame(const soc::FrameStart& start) {
 }
 
 const work::Job& LiveSource::process(FrameResult& result) {
-  const vio::FrameReport report = odometry_->process_frame(feed_.frame(frame_));
+  const vio::FrameInput& input = feed_.frame(frame_);
+  const vio::FrameReport report = odometry_->process_frame(input);
+  if (film_ != nullptr) film_->add(input, report);
   front_end_job_ = cluster_.take_job();
   result.index = frame_;
   result.t_ns = feed_.time_ns(frame_);

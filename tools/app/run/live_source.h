@@ -36,6 +36,7 @@ class LiveSource : public RunSource {
 
   vio::Profile profile_;
   bool evaluate_;
+  FilmWriter* film_;
   Feed feed_;
   work::Machine cluster_;
   work::Machine controller_;

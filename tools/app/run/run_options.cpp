@@ -30,6 +30,7 @@ void refuse_chip_options(const RunOptions& options, const RunRequest& request) {
   refuse_if(!options.platform.empty(), "--platform");
   refuse_if(!options.cores.empty(), "--cores");
   refuse_if(options.record, "--record");
+  refuse_if(options.film, "--film");
   refuse_if(!options.camera_fps.empty(), "--fps");
   refuse_if(!options.deadline.empty(), "--deadline");
   for (const std::string& text : request.overrides) refuse_if(true, "--set " + text);
@@ -138,6 +139,9 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       "for profiles without an initialisation]");
   command.add_flag("--online", options.online, "give every pose at once: the first are guesses");
   command.add_flag("--record", options.record, "leave a trace of the work, for leviosim replay");
+  command.add_flag("--film", options.film,
+                   "with --record: also images and features, some 4 kB a frame, for report "
+                   "--interactive");
   add_out_options(command, options);
   command.get_option("--out")->description(
       "folder for the results; must be new or empty [leviosim-run, or with the next free number]");
@@ -203,6 +207,14 @@ RunRequest make_request(const RunOptions& options) {
           "run: --record is for open loops, whose trace holds the work of every frame; with "
           "--fps or --deadline, frames are dropped as the chip's speed has it");
   }
+  if (options.film && !options.record)
+    throw InputError(
+        "run: --film goes with the work that a page times anew; expected --record, too");
+  if (options.film && vio::other_profile(options.profile) != nullptr)
+    throw InputError(fmt::format(
+        "run: --film draws the features of an odometry, and workload '{}' has none; expected it "
+        "without --film",
+        options.profile));
   return request;
 }
 

@@ -32,6 +32,7 @@ struct RunOptions {
   std::vector<std::string> overrides;
   bool native = false;
   bool record = false;
+  bool film = false;
   bool force = false;
   bool quiet = false;
   std::string tables;  ///< those to print in place of the summary

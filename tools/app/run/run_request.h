@@ -25,6 +25,7 @@ using soc::Progress;
 using soc::ProgressCallback;
 
 struct WorkRecording;
+class FilmWriter;
 
 /// The times that get bands (range_bands.h).
 enum class TimeBandsOf : std::uint8_t {
@@ -55,6 +56,7 @@ struct RunRequest {
   RunObserver* observer = nullptr;                  ///< sees every job; unused if native
   std::shared_ptr<traces::PictureMemory> pictures;  ///< of a study, whose runs share frames
   WorkRecording* recording = nullptr;  ///< gets every job, for a trace; unused if native
+  FilmWriter* film = nullptr;          ///< gets every frame; unused by other workloads
 };
 
 /// @throws InputError as profile_of()

@@ -28,6 +28,10 @@ function themeDefaults() {
 /** Lines at values of an axis: [{axis: "x"|"y", value, label}]. */
 const limitLines = {
   id: 'limitLines',
+  /** Room for labels above the bars. */
+  beforeInit(chart, _, options) {
+    if ((options.lines || []).some(({axis}) => axis === 'x')) chart.options.layout = {padding: {top: 16}};
+  },
   afterDatasetsDraw(chart, _, options) {
     const {ctx, chartArea: area, scales} = chart;
     for (const line of options.lines || []) {
@@ -49,11 +53,14 @@ const limitLines = {
       ctx.stroke();
       ctx.font = `600 11px ${Chart.defaults.font.family}`;
       const width = ctx.measureText(line.label).width;
-      if (line.axis === 'y')
-        ctx.fillText(line.label, area.right - width - 4, at - 5);
-      else
-        ctx.fillText(
-            line.label, Math.max(area.left, Math.min(at - width - 5, area.right)), area.top + 10);
+      const [x, y] = line.axis === 'y' ?
+          [area.right - width - 4, at - 5] :
+          [Math.max(area.left, Math.min(at - width / 2, area.right - width)), area.top - 5];
+      ctx.setLineDash([]);
+      ctx.lineWidth = 4;
+      ctx.strokeStyle = style('--card');
+      ctx.strokeText(line.label, x, y);
+      ctx.fillText(line.label, x, y);
       ctx.restore();
     }
   },
@@ -253,11 +260,11 @@ function chartFigure({title, hint, controls, config, table, height = 280, onpick
   const state = {};
   let chart = null;
 
-  function draw() {
+  /** @param anew  else in place, which takes half the time */
+  function draw(anew = true) {
     const focused = document.activeElement && legend.contains(document.activeElement) ?
         document.activeElement.textContent :
         null;
-    if (chart) chart.destroy();
     const pixels = typeof height === 'function' ? height(box.clientWidth) : height;
     box.style.height = `${pixels}px`;
     const wanted = config(box.clientWidth, pixels);
@@ -265,7 +272,13 @@ function chartFigure({title, hint, controls, config, table, height = 280, onpick
     if (onpick)
       wanted.options.onClick = (event, elements) =>
           elements.length > 0 && onpick(elements[0], chart);
-    chart = new Chart(canvas, wanted);
+    if (anew || !chart) {
+      if (chart) chart.destroy();
+      chart = new Chart(canvas, wanted);
+    } else {
+      Object.assign(chart, {data: wanted.data, options: wanted.options});
+      chart.update('none');
+    }
     const buttons = legendFor(chart, wanted.data.datasets, hidden, draw);
     legend.replaceChildren(...(buttons ? [buttons] : []));
     if (focused)
@@ -282,7 +295,7 @@ function chartFigure({title, hint, controls, config, table, height = 280, onpick
     onChartKey(event, chart, state);
   });
   figure.redraw = () => {
-    draw();
+    draw(false);
     const open = details.open;
     details.open = false;
     while (details.childElementCount > 1) details.lastElementChild.remove();

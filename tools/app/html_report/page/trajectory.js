@@ -44,30 +44,35 @@ function errorRamp(most) {
 
 /**
  * Upwards is the axis y, or z.
- * @param paths  [{name, errors}]; the truth is that of the longest
+ * @param paths  [{name, errors}]; the truth, where there is one, is that of the longest
+ * @param marks  () → datasets that are drawn over them @param onpick  as of chartFigure()
  */
-function pathFigure(paths, title, up) {
+function pathFigure(paths, title, up, {marks = () => [], onpick} = {}) {
   const pointsOf = (errors, name) =>
       errors[`${name}_x_m`].map((x, i) => ({x, y: errors[`${name}_${up}_m`][i], i}));
   const longest = paths.reduce((a, b) => (b.errors.t_s.length > a.errors.t_s.length ? b : a));
-  const truth = pointsOf(longest.errors, 'truth');
+  const hasTruth = Boolean(longest.errors.truth_x_m);
+  const truth = hasTruth ? pointsOf(longest.errors, 'truth') : [];
   const estimates = paths.map(({name, errors}) => ({name, errors, points: pointsOf(errors, 'estimate')}));
   const all = [...truth, ...estimates.flatMap((e) => e.points)];
-  const most = Math.max(...paths.flatMap(({errors}) => errors.position_error_m));
+  const most = Math.max(0, ...paths.flatMap(({errors}) => errors.position_error_m || []));
   const axes = (width, height) =>
       equalAxes(rangeOf(all.map((p) => p.x)), rangeOf(all.map((p) => p.y)), width, height);
-  const colourAt = (errors, i) => errorColour(errors.position_error_m[i] / (most || 1));
+  const colourAt = (errors, i) =>
+      errorColour(hasTruth ? errors.position_error_m[i] / (most || 1) : 0);
   const line = {showLine: true, borderWidth: 2, pointRadius: 0, pointHitRadius: 8, pointHoverRadius: 4};
   return chartFigure({
     title,
-    hint: `After alignment, x to the right, ${
+    hint: `${hasTruth ? 'After alignment, ' : ''}x to the right, ${
         up} upwards; metres are as long on both axes. The triangle is the start.`,
-    controls: errorRamp(most),
+    controls: hasTruth ? errorRamp(most) : null,
+    onpick,
     height: (width) => Math.min(420, Math.max(260, 0.75 * width)),
     config: (width, height) => ({
       type: 'scatter',
       data: {
         datasets: [
+          ...marks(),
           ...estimates.map(({name, errors, points}, k) => ({
                              ...line,
                              label: name,
@@ -124,8 +129,9 @@ function pathFigure(paths, title, up) {
       rows: estimates.flatMap(
           ({name, errors, points}) => points.map(
               ({x, y}, i) =>
-                  [name, errors.t_s[i], x, y, errors.truth_x_m[i], errors[`truth_${up}_m`][i],
-                   errors.position_error_m[i]])),
+                  [name, errors.t_s[i], x, y,
+                   ...['truth_x_m', `truth_${up}_m`, 'position_error_m'].map(
+                       (column) => errors[column]?.[i] ?? null)])),
     }),
   });
 }

@@ -5,8 +5,10 @@
 const kRest = 200;
 
 class InteractivePage {
-  constructor(data, engine, flights) {
+  /** @param film  of all frames, or null */
+  constructor(data, engine, flights, film) {
     this.data = data;
+    this.film = film;
     this.engine = engine;
     this.flights = flights;
     this.setting = new Setting(data);
@@ -21,6 +23,7 @@ class InteractivePage {
       failure: element('p', {class: 'status-bad', role: 'alert'}),
       status: element('p', {class: 'hint'}),
       command: element('code'),
+      seen: element('p'),
       frame: element('input', {
         type: 'number',
         min: 0,
@@ -28,6 +31,7 @@ class InteractivePage {
         onchange: () => this.select(Number(this.parts.frame.value))
       })
     };
+    this.player = new Player(data.frames, this.setting, (number) => this.select(number));
     this.updates = [];  // times that the selected frame took, in ms
   }
 
@@ -67,8 +71,14 @@ class InteractivePage {
     document.getElementById('content').classList.toggle('stale', Boolean(text));
   }
 
+  tellFrame() {
+    const {facts, words} = this.data.flight;
+    const {latencies, period_ns, frame} = this.state;
+    this.parts.seen.textContent = frameSentence(facts, words, frame, latencies[frame], period_ns);
+  }
   /** Of the flight that was timed last. */
   showAnswer() {
+    this.tellFrame();
     this.parts.verdict.replaceChildren(verdictsOf(this.now));
     this.parts.tiles.replaceChildren(
         answerTiles(this.now, this.recorded, this.area, this.recordedArea));
@@ -81,6 +91,9 @@ class InteractivePage {
     this.latency = latencyFigure(this.state, (number) => this.select(number));
     this.stages = stageBars(this.bars, this.data.mechanisms);
     this.gantt = frameGantt(this.bars, this.setting);
+    const select = (number) => this.select(number);
+    this.views = [flightPath(this.data.flight.path, this.film, this.state, select)];
+    if (this.film) this.views.unshift(filmFigure(this.film, this.state));
     document.getElementById('content').replaceChildren(
         element(
             'section', {id: 'verdict', 'aria-label': 'Verdict'},
@@ -101,7 +114,13 @@ class InteractivePage {
                             button('Smallest that is never late', () => findSmallest(this)),
                             button('Copy as command', (event) => this.copy(event.target))),
                     command),
-                this.latency, this.gantt, this.stages)));
+                this.latency,
+                element(
+                    'div', {class: 'card'},
+                    element('div', {class: 'controls'}, this.player.button,
+                            element('span', {class: 'hint'}, 'Space plays, arrows step.')),
+                    this.parts.seen),
+                element('div', {class: 'pair'}, ...this.views), this.gantt, this.stages)));
     drawAll();
   }
   /** An address may have moved a slider that is out of sight. */
@@ -176,7 +195,6 @@ class InteractivePage {
 
   changed() {
     clearTimeout(this.rest);
-    history.replaceState(null, '', `#${this.setting.fragment()}`);
     this.parts.command.textContent = this.setting.command();
     this.parts.frame.value = this.setting.frame;
     this.state.frame = this.setting.frame;
@@ -184,8 +202,8 @@ class InteractivePage {
     this.parts.sentence.textContent = runs ?
         sentence(this.setting, this.bars.now, this.bars.recorded, this.data.mechanisms) :
         '';
-    this.stages.redraw();
-    this.gantt.redraw();
+    for (const figure of [this.stages, this.gantt, ...this.views]) figure.redraw();
+    this.tellFrame();
     this.rest = setTimeout(() => this.rested(runs), kRest);
     this.latency.redraw();
     this.knobs.show();
@@ -193,10 +211,12 @@ class InteractivePage {
 
   /** @param runs  whether the setting does; else it is only asked which others do */
   rested(runs) {
+    history.replaceState(null, '', `#${this.setting.fragment()}`);  // browsers bear few a second
     if (runs) this.knobs.show((others) => this.engine.price(this.setting.frame, others));
     const period_ns = this.setting.period_ns;
     const latencies = [];
     if (runs) Object.assign(this.state, {latencies, period_ns});
+    this.tellFrame();
     this.flights.start(runs ? this.setting.lines() : null, this.knobs.questions(), {
       frames: (frames) => {
         this.arrived(latencies, frames);
@@ -230,9 +250,11 @@ async function interactiveMain() {
   try {
     const module = await WebAssembly.compile(await unpacked('engine'));
     const trace = await unpacked('trace');
+    const film = document.getElementById('film') &&
+        JSON.parse(new TextDecoder().decode(await unpacked('film')));
     const engine = new ReplayEngine(module);
     engine.load(trace, data.chip);
-    window.page = new InteractivePage(data, engine, new Flights(module, trace, data.chip));
+    window.page = new InteractivePage(data, engine, new Flights(module, trace, data.chip), film);
     window.page.begin();
   } catch (error) {
     content.replaceChildren(element(

@@ -51,11 +51,16 @@ function knobView(setting, knob, i, changed) {
     min: 0,
     max: knob.values.length - 1,
     step: 1,
+    disabled: Boolean(knob.fixed),
     oninput: () => {
       setting.at[i] = Number(slider.value);
       changed();
     }
   });
+  const others = knob.values.filter((_, n) => n !== knob.recorded).join(',');
+  const fixed = knob.fixed ?
+      [`. ${knob.fixed} `, element('code', {}, `leviosim whatif ${setting.data.run} ${knob.path}=${others}`)] :
+      [];
   let paid = null;
   function show(price = paid) {
     paid = price;
@@ -70,7 +75,7 @@ function knobView(setting, knob, i, changed) {
       mark.title = refusals[n] ? `${knob.values[n]}: ${refusals[n]}` : knob.values[n];
     });
     note.replaceChildren(
-        knob.help, price ? element('strong', {}, ` ${priceText(price)}`) : '',
+        knob.help, ...fixed, price ? element('strong', {}, ` ${priceText(price)}`) : '',
         refusal ? element('span', {class: 'status-bad'}, ` Cannot run: ${refusal}`) : '');
   }
   return {
