@@ -39,13 +39,22 @@ let computed binaryOperator(hasAnyOperatorName("%", "/", "&", "|", "^", ">>", "<
 let hasComputed expr(anyOf(computed, hasDescendant(computed)))
 let computedVariable declRefExpr(to(varDecl(hasInitializer(hasComputed))))
 let fromComputed expr(anyOf(hasComputed, computedVariable, hasDescendant(computedVariable)))
+let ofLoop varDecl(hasParent(declStmt(hasParent(forStmt()))))
+let constant varDecl(anyOf(isConstexpr(), allOf(hasType(isConstQualified()), hasInitializer(integerLiteral()))))
+let sized cxxRecordDecl(hasAnyName("::std::array", "::leviosim::work::CountedArray"))
+let known callExpr(anyOf(cxxMemberCallExpr(thisPointerType(sized)), allOf(callee(functionDecl(isConstexpr())), unless(cxxMemberCallExpr()))))
+let variable expr(anyOf(declRefExpr(hasType(isInteger()), to(varDecl(unless(ofLoop), unless(constant)))), memberExpr(hasType(isInteger()), member(fieldDecl())), callExpr(unless(known))))
+let atRunTime binaryOperator(hasAnyOperatorName("<", "<=", ">", ">=", "!=", "=="), hasEitherOperand(expr(anyOf(variable, hasDescendant(variable)))))
+let inTable hasAncestor(functionDecl(isConstexpr(), unless(cxxMethodDecl(ofClass(cxxRecordDecl(isLambda()))))))
+let ends expr(anyOf(atRunTime, hasDescendant(atRunTime)))
+let begins declStmt(hasDescendant(varDecl(hasInitializer(expr(anyOf(variable, hasDescendant(variable)))))))
 let plainIndex cxxOperatorCallExpr(hasOverloadedOperatorName("[]"), callee(cxxMethodDecl(ofClass(view), hasParameter(0, hasType(isInteger())))))
 """
 
 RULES = {
     "a view's memory without its counters: .data()":
         ('expr(raw, here, unless(hasAncestor(toView)), '
-         'unless(hasAncestor(typeAliasDecl())))',
+         'unless(hasAncestor(typeAliasDecl())), unless(hasAncestor(unaryExprOrTypeTraitExpr())))',
          "read and write elements of the view, or make a view of it"),
     "an element of a plain pointer":
         ('arraySubscriptExpr(here, hasAncestor(kernel), unless(hasBase(ignoringParenImpCasts(hasType(hasCanonicalType(arrayType()))))), '
@@ -62,6 +71,9 @@ RULES = {
     "index arithmetic on plain integers that no loop's stream replaces":
         ('cxxOperatorCallExpr(plainIndex, here, unless(hasArgument(1, fromValue)), hasArgument(1, fromComputed))',
          "compute the index in P::I32"),
+    "a loop on plain numbers that ends where data say":
+        ('stmt(anyOf(forStmt(hasCondition(ends)), forStmt(hasLoopInit(begins), hasCondition(expr(hasDescendant(declRefExpr(to(ofLoop)))))), whileStmt(hasCondition(ends)), doStmt(hasCondition(ends))), here, hasAncestor(kernel), unless(inTable))',
+         "iterate over P::range"),
 }
 
 PLACE = re.compile(r'^(.*?):(\d+):\d+: note: "at" binds here$')
@@ -86,7 +98,7 @@ def query():
 def script():
     lines = DEFINITIONS.strip().splitlines()
     for matcher, _ in RULES.values():
-        lines.append(f'match expr({matcher}, expr().bind("at"), unless(onHost))')
+        lines.append(f'match stmt({matcher}, stmt().bind("at"), unless(onHost))')
     return lines
 
 

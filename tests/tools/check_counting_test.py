@@ -13,7 +13,8 @@ SOURCES = pathlib.Path(sys.argv[1]).absolute()
 ALL = "--all" in sys.argv
 FLAGS = ["--", "-std=c++20", "-I.", "-I/usr/include/eigen3"]
 TRAPS = "tests/tools/counting_traps.cpp"
-KINDS = ("a view's memory", "a plain pointer", "an array that counts no load", "work::value() in an index", "index arithmetic")
+KINDS = ("a view's memory", "a plain pointer", "an array that counts no load", "work::value() in an index", "index arithmetic",
+         "a loop on plain numbers")
 MOST = ("levio/vision/levio_extractor.cpp", "levio/geometry/epnp.cpp", "graph/anchored_landmarks.cpp",
         "vio/inertial_part.cpp", "next/loop/place_search.cpp", "vision/matcher.cpp")
 

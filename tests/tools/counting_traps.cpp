@@ -1,5 +1,6 @@
 // Kernels that go round the work counters, for tests/tools/check_counting_test.py: each line with a comment
 // `trap: …` is one, and nothing else here is. Compiled by nobody.
+#include <array>
 #include <cstring>
 
 #include "sim/work/functions.h"
@@ -53,6 +54,31 @@ struct Kernels {
     return sum;
   }
 
+  static I iterates_plainly(Span<const Byte> row, int n) {
+    I sum = 0;
+    for (int x = 0; x < n; ++x) sum += I(row[x]);  // trap: a loop on plain numbers
+    for (int x = row.size(); x > 0; x -= 2) sum += I(1);  // trap: a loop on plain numbers
+    int left = n;
+    while (left-- > 0) sum += I(1);  // trap: a loop on plain numbers
+    do sum += I(1);  // trap: a loop on plain numbers
+    while (++left < n);
+    return sum;
+  }
+
+  /// Unrolled, or counted by what is compared.
+  template <int N>
+  static I iterates_as_code_says(Span<const Byte> row) {
+    constexpr int most = 4;
+    std::array<I, 3> sums{};
+    I sum = 0;
+    for (int x = 0; x < N; ++x) sum += I(row[x]);
+    for (int x = 0; x < 2 * most + 1; ++x)
+      for (int y = 0; y <= x; ++y) sum += I(row[x]);
+    for (std::size_t i = 0; i < sums.size(); ++i) sum += sums[i];
+    while (sum > I(3)) sum = sum - I(2);
+    return sum;
+  }
+
   /// What is allowed.
   static I counts(Span<const Byte> row, Span<I> sums, I place, int width) {
     const Span<const Byte> part(row.data() + width, width);
@@ -66,6 +92,7 @@ struct Kernels {
     for (int i = 0; i < 4; ++i) sum += I(registers[i]);
     for (int i : P::range(0, names)) held[i] = sum;
     sums[I(place + I(1))] = I(row[I(place / I(2))]);
+    sum += iterates_as_code_says<3>(row);
     return sum + I(static_cast<int>(row.data()[0]));  // uncounted: a check of the host
   }
 };

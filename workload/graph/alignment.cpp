@@ -341,6 +341,7 @@ AlignmentReport align_from_all(work::Machine& fc, Window<P>& window, AlignmentSt
     for (std::size_t s = 0; s < reports.size(); ++s) {
       AlignmentState<P> trial{options.initial_lambda,
                               s > 0 ? F(kStarts[s - 1]) : state.inverse_depth};
+      // uncounted: a few rounds, of some 100 000 cycles each
       for (int i = 0; i < options.start_iterations; ++i) {
         const Begin begin = s > 0 && i == 0 ? Begin::afresh : Begin::here;
         reports[s] = iterate<P>(fc, share, trial, optimiser, options, begin);

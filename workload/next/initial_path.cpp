@@ -67,6 +67,7 @@ std::vector<EarlierPose> InitialPath<P>::poses(float dt) const {
   const auto stage = machine.stage(stages::kGuided);
   const auto record = machine.local().template alloc<Floats>("IMU interval", kFloats);
   std::optional<KeyframeState<P>> state = keyframe(newest_keyframe());
+  // uncounted: a round for each frame that waits, once a map
   for (int n = count_ - 1; n >= std::max(0, count_ - frames_) && state; --n) {
     const int at = n % frames_;
     if (now_s_ + dt - taken_s_[static_cast<std::size_t>(at)] > state_.profile.initial_wait) break;

@@ -90,6 +90,7 @@ Pixels<P> fetch_window(const ConstImageView<P>& image, const Place<P>& at, int r
           reinterpret_cast<const Element*>(image.pixels.data() + row * image.width + left),
           stride / kBytes);
       const typename P::template Span<Element> to(
+          // uncounted: makes a view of words, whose accesses are counted
           reinterpret_cast<Element*>(room.data() + (row - top) * stride), stride / kBytes);
       for (int i : P::range(0, stride / kBytes)) {
         const Loaded loaded = from[i];

@@ -120,6 +120,7 @@ template <class P>
 void damp(const ReducedSystem<P>& system, typename P::F32 lambda) {
   using F = typename P::F32;
   const MatrixView<P> matrix = system.matrix();
+  // uncounted: a round for each keyframe of the window
   for (int at = 0; at < system.unknowns(); at += system.per_keyframe())
     for (int i : P::range(0, system.per_keyframe())) {
       F diagonal = matrix(at + i, at + i);

@@ -238,7 +238,7 @@ auto LoopCloser<P>::only_hypothesis(const PlaceList<P>& places, const LoopView<P
                                     const PlaceQuery<P>& query, const PlaceCandidates& candidates)
     -> std::optional<Hypothesis> {
   std::optional<Hypothesis> first;
-  for (int k = 0; k < candidates.count; ++k) {
+  for (int k : P::range(0, candidates.count)) {
     const int place = candidates.places[static_cast<std::size_t>(k)];
     const std::optional<Hypothesis> found = recognise_at(places, place, view, query);
     if (!found) continue;
@@ -256,7 +256,7 @@ bool LoopCloser<P>::confirms(const Hypothesis& hypothesis, const Vec3<P>& positi
   const ConfirmationOptions& options = options_.confirmation;
   int agreeing = 1, contradicting = 0;
   F first = travelled_;
-  for (int i = 0; i < std::min(recent_count_, kRecent); ++i) {
+  for (int i : P::range(0, std::min(recent_count_, kRecent))) {
     const Hypothesis& other = recent_[static_cast<std::size_t>(i)];
     if (travelled_ - other.travelled > F(options.window)) continue;
     if (other.ambiguous || !agree(hypothesis, other, position)) {

@@ -42,8 +42,10 @@ typename P::I32 next_candidate(const PlaceList<P>& places,
     const I32 score = scores[i];
     if (!(score > best_score)) continue;
     bool is_new = true;
-    for (int k = 0; k < chosen.count && is_new; ++k)
+    for (int k : P::range(0, chosen.count)) {
       is_new = !are_neighbours(places, i, chosen.places[static_cast<std::size_t>(k)], options);
+      if (!is_new) break;
+    }
     if (!is_new) continue;
     best = i;
     best_score = score;
@@ -78,10 +80,11 @@ PlaceCandidates find_candidates(work::Machine& machine, const PlaceList<P>& plac
   });
   PlaceCandidates candidates;
   const int most = std::min(options.candidates, PlaceCandidates::kMost);
-  while (candidates.count < most) {
+  for (int k : P::range(0, most)) {
     const I32 next = next_candidate<P>(places, scores, candidates, options);
     if (next < I32(0)) break;
-    candidates.places[static_cast<std::size_t>(candidates.count++)] = work::value(next);
+    candidates.places[static_cast<std::size_t>(k)] = work::value(next);
+    candidates.count = k + 1;
   }
   return candidates;
 }

@@ -202,7 +202,7 @@ UprightPose<P> find_upright_pose(work::Machine& machine, const UprightInput<P>& 
     const auto [first, last] = core.share(options.iterations);
     for (int k : P::range(first, last)) {
       const PairSolution<P> pair = solve_pair<P>(input, I32(pairs[2 * k]), I32(pairs[2 * k + 1]));
-      for (int i = 0; i < pair.count; ++i) {
+      for (int i : P::range(0, pair.count)) {
         const Score<P> score = score_of(input, pair.T[i], options);
         if (!score.is_better_than(most)) continue;
         most = score;

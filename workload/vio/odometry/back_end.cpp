@@ -83,6 +83,7 @@ void BackEnd<P>::update_prior() {
   if (prior_.keyframes == 0) return;
   const I32 oldest = graph_.keyframe_ids[graph_.keyframe_slot(0)];
   int departed = 0;
+  // uncounted: rounds, one more than the keyframe or two that have left; the comparison is
   while (departed < window_.keyframes && I32(window_.keyframe_ids[departed]) < oldest) ++departed;
   if (departed == window_.keyframes) {
     prior_.keyframes = 0;
