@@ -16,7 +16,7 @@ namespace {
 const ShortFlight& flight_of(int width) {
   static const ShortFlight paper = draw_flight(PacedFlight(3, at_pace(1)), 5);
   static const ShortFlight small = draw_flight(PacedFlight(3, at_pace(1)), 4, 96, 72);
-  static const ShortFlight large = draw_flight(PacedFlight(3, at_pace(1)), 2, 320, 240);
+  static const ShortFlight large = draw_flight(PacedFlight(3, at_pace(1)), 3.5, 320, 240);
   return width == 160 ? paper : width == 96 ? small : large;
 }
 
@@ -147,6 +147,8 @@ INSTANTIATE_TEST_SUITE_P(Odometry, InAnL1Of,
                              L1Case{"next", 48, 4, 160}, L1Case{"next", 64, 8, 160},
                              L1Case{"next", 96, 1, 160}, L1Case{"next", 128, 16, 160},
                              L1Case{"next", 256, 4, 160}, L1Case{"next", 48, 16, 96},
+                             L1Case{"levio", 32, 4, 320}, L1Case{"levio", 48, 8, 320},
+                             L1Case{"next", 32, 4, 320}, L1Case{"next", 48, 8, 320},
                              L1Case{"levio", 64, 8, 320}, L1Case{"levio", 64, 16, 320},
                              L1Case{"levio", 96, 1, 320}, L1Case{"levio", 128, 4, 320},
                              L1Case{"levio", 256, 16, 320}, L1Case{"next", 64, 8, 320},

@@ -120,6 +120,11 @@ TEST_F(WhatIfCommand, AnotherL1MakesAnotherWorkWhereItMust) {
   EXPECT_EQ(table[2].at("computed"), "run again");
   EXPECT_EQ(table[3].at("computed"), "replayed");
   EXPECT_EQ(table[4].at("computed"), "replayed");
+  for (const std::size_t row : {1, 2, 3})
+    EXPECT_EQ(table[row].at("why").get<std::string>().find("in tiles: ") != std::string::npos,
+              row < 3)
+        << table[row];
+  EXPECT_EQ(table[1].at("variant"), "cluster.l1.size=32KiB");
   EXPECT_EQ(mean_ms(table[3]), mean_ms(table[0]));
   EXPECT_LT(mean_ms(table[2]), 1.10 * mean_ms(table[0]));
   // A run that was recorded in tiles is another in a larger L1, too.
@@ -131,6 +136,17 @@ TEST_F(WhatIfCommand, AnotherL1MakesAnotherWorkWhereItMust) {
   const Json larger = Json::parse(result.out).at("rows");
   EXPECT_EQ(larger[1].at("computed"), "run again");
   EXPECT_EQ(mean_ms(larger[1]), mean_ms(table[0]));
+}
+
+TEST_F(WhatIfCommand, HalfOfL1CostsNextATenthAtMost) {
+  expect_done({"run", "--data", path("flight"), "--profile", "next", "--out", path("next"),
+               "--record", "--quiet"});
+  const ProgramResult result =
+      program({"whatif", path("next"), "cluster.l1.size=64KiB", "--quiet", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json table = Json::parse(result.out).at("rows");
+  EXPECT_EQ(table[1].at("computed"), "run again");
+  EXPECT_LT(mean_ms(table[1]), 1.10 * mean_ms(table[0]));
 }
 
 TEST_F(WhatIfCommand, CausesAddUp) {

@@ -368,6 +368,13 @@ double area_of(const std::string& svg, const std::string& colour) {
 struct DrawnRun {
   explicit DrawnRun(int frames) {
     MixedSource source({.frames = frames, .iteration = 5'000}, 8, 3);
+    draw(source);
+  }
+  DrawnRun(RunSource& source, const sim::ExternalMemoryConfig& external) {
+    request.platform.config.controller.external = external;
+    draw(source);
+  }
+  void draw(RunSource& source) {
     request.cores = 8;
     request.observer = &collector;
     run = simulate_source(request, source, [](const Progress&) {});
@@ -401,6 +408,14 @@ TEST(TimelinePicture, AreasOfWorkAndWaitsAreThoseOfTheCycles) {
   EXPECT_NEAR(area_of(svg, "#2a7f62"), work * area_of_cycle, tolerance);
   EXPECT_NEAR(area_of(svg, "#be202e"), divider * area_of_cycle, tolerance);
   EXPECT_GT(area_of(svg, "#be202e"), 0);
+}
+
+TEST(TimelinePicture, HasARowOfExternalMemoryWhereDataPass) {
+  ExternalSource source(5);
+  const DrawnRun far(source, {1e-6, 64e6, Bytes(0), Bytes(1 << 20)});
+  EXPECT_EQ(testing::xml_fault(far.svg), "");
+  EXPECT_NE(far.svg.find(">external</text>"), std::string::npos);
+  EXPECT_EQ(DrawnRun(1).svg.find(">external</text>"), std::string::npos);
 }
 
 TEST(TimelinePicture, OfTenFramesHasNoLabelsOnEachOtherAndAColourForEachStage) {

@@ -168,9 +168,8 @@ class Picture {
   }
   double top() const { return kLegendTop + kLegendStep * static_cast<double>(legend_lines_) + 10; }
   double row_top(std::size_t row) const { return top() + kRowStep * static_cast<double>(row); }
-  bool has_external() const { return run_.chip.controller.external.size > Bytes(0); }
   std::size_t rows() const {
-    return static_cast<std::size_t>(events_.cores) + (has_external() ? 6 : 5);
+    return static_cast<std::size_t>(events_.cores) + (has_external_ ? 6 : 5);
   }
   double bottom() const { return row_top(rows()); }
 
@@ -206,6 +205,7 @@ class Picture {
   };
   std::vector<LegendItem> legend_;
   std::size_t legend_lines_ = 0;
+  bool has_external_ = false;             ///< whether data of external memory pass
   std::vector<std::string_view> stages_;  ///< in the order of their colours
 };
 
@@ -215,6 +215,9 @@ Picture::Picture(const TimelineEvents& events, const RunResult& run) : events_(e
     for (const StageEvents& stage : frame.stages)
       if (std::find(stages_.begin(), stages_.end(), stage.name) == stages_.end())
         stages_.push_back(stage.name);
+  for (const IterationEvents& iteration : events_.iterations)
+    for (const StageEvents& stage : iteration.stages)
+      has_external_ = has_external_ || !stage.steps.empty();
   lay_out_legend();
 }
 
@@ -409,7 +412,7 @@ void Picture::draw_transfers(Svg& svg) const {
   draw_label(svg, row + 1, "DMA, to L2");
   for (const FrameEvents& frame : events_.frames)
     for (const StageEvents& stage : frame.stages) draw_transfers(svg, stage, row);
-  if (!has_external()) return;
+  if (!has_external_) return;
   draw_label(svg, row + 2, "external");
   for (const IterationEvents& iteration : events_.iterations)
     for (const StageEvents& stage : iteration.stages) draw_transfers(svg, stage, row + 2);

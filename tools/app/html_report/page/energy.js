@@ -4,6 +4,11 @@ const domainColours = new Colours(kDomainPalette);
 for (const domain of ['cores', 'fpu', 'l1', 'dma', 'cluster', 'controller', 'l2', 'soc'])
   domainColours.of(domain);
 
+/** As other charts and pages name it. */
+function domainName(domain) {
+  return {fpu: 'FPU', l1: 'L1', dma: 'DMA', l2: 'L2', soc: 'SoC'}[domain] || domain;
+}
+
 /** stage → domain → {value, low, high} of a quantity. */
 function energyOf(run, quantity) {
   const table = run.tables.energy;
@@ -30,7 +35,7 @@ function domainFigure(title, hint, unit, entries) {
         labels: entries.map(([name]) => name),
         datasets: domains.map(
             (domain) => ({
-              label: domain,
+              label: domainName(domain),
               backgroundColor: domainColours.of(domain),
               barPercentage: 0.75,
               data: entries.map(([, parts]) => (parts[domain] ? parts[domain].value : null))
@@ -74,7 +79,7 @@ function domainFigure(title, hint, unit, entries) {
       ],
       rows: entries.flatMap(
           ([name, parts]) => Object.entries(parts).map(
-              ([domain, {value, low, high}]) => [name, domain, value, low, high])),
+              ([domain, {value, low, high}]) => [name, domainName(domain), value, low, high])),
     }),
   });
 }

@@ -64,7 +64,7 @@ function memoryFigure(title, hint, peaks, size) {
           barNames: {show: true},
           limitLines: {
             lines:
-                [{axis: 'x', value: size / 1e3, label: `capacity ${numberText(size / 1024)} KiB`}]
+                [{axis: 'x', value: size / 1e3, label: `capacity ${numberText(size / 1e3, 5)} kB`}]
           },
           tooltip:
               {callbacks: {label: (item) => ` ${item.dataset.label}: ${numberText(item.raw)} kB`}},

@@ -36,6 +36,15 @@ struct SettingChoice {
   std::vector<std::string> values;
 };
 
+/// "32,64KiB": 32 has the unit of the last, too.
+void share_unit(std::vector<std::string>& values) {
+  const std::optional<platform::Measure> last = platform::split_measure(values.back());
+  if (!last || last->unit.empty()) return;
+  for (std::string& value : values)
+    if (const auto measure = platform::split_measure(value); measure && measure->unit.empty())
+      value += last->unit;
+}
+
 /// "a=1,2,b=3": a is 1 or 2, b is 3.
 std::vector<SettingChoice> choices_of(const std::string& text) {
   std::vector<SettingChoice> choices;
@@ -46,6 +55,7 @@ std::vector<SettingChoice> choices_of(const std::string& text) {
     else
       choices.push_back({item.substr(0, equals), {item.substr(equals + 1)}});
   }
+  for (SettingChoice& choice : choices) share_unit(choice.values);
   return choices;
 }
 
@@ -78,6 +88,8 @@ VariantResult timed(const Variant& variant, const ResolvedPoint& point, KnownRun
   result.verdicts = figures.verdicts;
   result.unused = unused_accelerators(figures);
   take_costs(result, run);
+  for (const StageResult& stage : run.stages)
+    if (stage.transfers.tiles > 0) result.tiled.push_back(stage.name);
   result.parts = {cycle_parts(run), request.cores, static_cast<double>(run.frames.size()),
                   run.cluster_clock};
   return result;

@@ -39,6 +39,7 @@ struct VariantResult {
   std::size_t frames = 0;
   double period_ms = 0;  ///< of the camera
   Verdicts verdicts;
+  std::vector<std::string> tiled;  ///< stages whose blocks pass through a memory in tiles
   std::optional<Banded> energy_mj;
   std::optional<double> area_mm2;
   bool is_whole_area = true;  ///< else parts are unknown

@@ -183,6 +183,17 @@ Ranking ranked(const std::vector<VariantResult>& results) {
   return rank;
 }
 
+/// Of stages: "in tiles: world matching, triangulation and 2 more".
+std::string tiled_text(const std::vector<std::string>& stages) {
+  constexpr std::size_t kMost = 3;
+  if (stages.empty()) return "nothing passes in tiles";
+  const std::size_t named = stages.size() > kMost ? kMost - 1 : stages.size();
+  std::string text = fmt::format(
+      "in tiles: {}", fmt::join(stages.begin(), stages.begin() + static_cast<std::ptrdiff_t>(named), ", "));
+  if (named < stages.size()) text += fmt::format(" and {} more", stages.size() - named);
+  return text;
+}
+
 }  // namespace
 
 std::string reason_of(const VariantResult& base, const VariantResult& variant) {
@@ -202,6 +213,7 @@ std::string reason_of(const VariantResult& base, const VariantResult& variant) {
     }
   if (std::string unused = unused_text(base.unused, variant.unused); !unused.empty())
     parts.push_back(std::move(unused));
+  if (variant.tiled != base.tiled) parts.push_back(tiled_text(variant.tiled));
   if (parts.empty()) return "no frame waits for it";
   return fmt::format("{}", fmt::join(parts, "; "));
 }
