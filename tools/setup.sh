@@ -2,6 +2,7 @@
 # Installs what leviosim needs and is missing, from Debian 12's packages. Does nothing, and needs no
 # network, where everything is there.
 #   tools/setup.sh          what the program needs
+#   tools/setup.sh pages    and what compiles the engine of interactive pages
 #   tools/setup.sh tests    what its tests need, too: a browser for pages, references, benchmarks
 #   tools/setup.sh full     and other compilers, with their sanitizers and for WebAssembly, and what counts instructions
 set -euo pipefail
@@ -26,16 +27,16 @@ tests=(
   python3-dev pybind11-dev python3-numpy                      # the Python module (preset python)
   python3-pil                                                 # pictures, for tools/research
 )
-compilers=(clang libclang-rt-14-dev clang-tools  # tools/check_reproducible.sh; libFuzzer (tools/fuzz.sh); check_counting.py
-  valgrind                                       # tools/ci/host_work.sh
-  # The engine of interactive pages (preset wasm).
-  lld wasi-libc libc++-14-dev-wasm32 libclang-rt-14-dev-wasm32)
+pages=(clang lld wasi-libc libc++-14-dev-wasm32 libclang-rt-14-dev-wasm32)  # the engine of interactive pages
+compilers=("${pages[@]}" libclang-rt-14-dev clang-tools  # tools/check_reproducible.sh; libFuzzer (tools/fuzz.sh); check_counting.py
+  valgrind)                                              # tools/ci/host_work.sh
 case ${1:-program} in
   program) ;;
+  pages) packages+=("${pages[@]}") ;;
   tests) packages+=("${tests[@]}") ;;
   full) packages+=("${tests[@]}" "${compilers[@]}") ;;
   *)
-    echo "setup: unknown set '$1'; expected program, tests or full" >&2
+    echo "setup: unknown set '$1'; expected program, pages, tests or full" >&2
     exit 2
     ;;
 esac

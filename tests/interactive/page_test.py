@@ -304,6 +304,8 @@ class InteractivePage(unittest.TestCase):
         page.press(" ", "Space", 32)
         page.wait("!window.page.player.timer", 20)  # to the end of the flight
         shown(59)
+        # The label of the deadline still has its room above the bars.
+        self.assertGreaterEqual(page.run(chart("The selected frame in time") + ".chartArea.top"), 16)
         page.press(" ", "Space", 32)  # and from its begin again
         page.wait("window.page.setting.frame < 30 && window.page.setting.frame > 2", 20)
         self.assertEqual(page.complaints, [])

@@ -29,6 +29,19 @@ TEST(DemoCommand, ShowsBothProfilesOnAScreenAndLeavesThemWithAReport) {
   for (const char* part : {"levio: 1", "next: 1", "feature extraction", "optimiser iteration",
                            "L1 and L2", "one FPU", "240 MHz", "█", "speed-up", "30 frames on GAP9"})
     EXPECT_NE(shown.out.find(part), std::string::npos) << part << " is not in:\n" << shown.out;
+  // Pages that compute, or what to do for them.
+  const bool computes = shown.out.find("setup.sh pages") == std::string::npos;
+  for (const char* file : {"demo/levio.html", "demo/next.html", "demo/next/flight.film"})
+    EXPECT_EQ(fs::exists(folder.path() / file), computes) << file;
+  if (computes) {
+    EXPECT_NE(shown.out.find(path("demo/levio.html") + " and next.html"), std::string::npos);
+    const std::string page = base::read_text_file(path("demo/levio.html"));
+    ASSERT_EQ(testing::run_program(folder.path(), {"report", path("demo/levio"), "--interactive",
+                                                   "-o", path("again.html")})
+                  .status,
+              0);
+    EXPECT_EQ(page.size(), base::read_text_file(path("again.html")).size());
+  }
   for (const char* file : {"demo/report.html", "demo/next/run.json"})
     EXPECT_TRUE(fs::exists(folder.path() / file)) << file;
   EXPECT_EQ(shown.out.rfind("verdict: ", 0), 0u) << shown.out;

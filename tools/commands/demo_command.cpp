@@ -1,4 +1,4 @@
-// leviosim demo: both profiles on the synthetic flight, and a what-if, on one screen.
+// leviosim demo: both profiles on the synthetic flight, and a what-if, on one screen, with pages.
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -14,8 +14,10 @@
 #include "tools/app/cli/screen.h"
 #include "tools/app/comparison/comparability.h"
 #include "tools/app/comparison/comparison.h"
+#include "tools/app/film/film.h"
 #include "tools/app/html_report/page.h"
 #include "tools/app/html_report/report_option.h"
+#include "tools/app/interactive/interactive_page.h"
 #include "tools/app/result/camera_figures.h"
 #include "tools/app/result/energy_summary.h"
 #include "tools/app/result/summary.h"
@@ -24,6 +26,7 @@
 #include "tools/app/study/whatif/whatif.h"
 #include "tools/app/study/whatif/whatif_report.h"
 #include "tools/commands/commands.h"
+#include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
 namespace {
@@ -35,23 +38,39 @@ constexpr const char* kReport = "report.html";
 struct Flown {
   std::shared_ptr<const RunResult> result;
   RunFolder folder;
-  std::string trace;  ///< its work, where it was recorded
+  std::string trace;  ///< its work
+  std::string film;   ///< where there is a page that plays it
 };
 
-Flown fly(RunOptions options, const char* profile, bool record, const Arguments& words,
+Flown fly(RunOptions options, const char* profile, const Arguments& words,
           ProgressLine::Style style) {
   options.profile = profile;
   RunRequest request = make_chip_request(options);
   request.time_bands = TimeBandsOf::team;
   request.data = data_folder(options, style);
   WorkRecording recording(request.cores);
-  if (record) request.recording = &recording;
-  Flown flown{std::make_shared<const RunResult>(simulate_with_progress(request, style)), {}, {}};
+  request.recording = &recording;
+  std::string pictures;
+  FilmWriter film([&](std::string_view bytes) { pictures += bytes; });
+  if (has_engine()) request.film = &film;
+  Flown flown{
+      std::make_shared<const RunResult>(simulate_with_progress(request, style)), {}, {}, {}};
   const Manifest manifest = make_manifest(options, request, words);
   flown.folder = run_folder(options.out + '/' + profile, flown.result, manifest,
                             platform::to_yaml(request.platform));
-  if (record) flown.trace = work_trace_of(std::move(recording), options, request, manifest);
+  flown.trace = work_trace_of(std::move(recording), options, request, manifest);
+  if (has_engine()) flown.film = std::move(pictures);
   return flown;
+}
+
+/// "levio.html", which computes and plays the flight.
+std::string page_name(const Flown& flown) { return flown.result->profile + ".html"; }
+
+std::string page_of(const Flown& flown) {
+  const std::string& name = flown.folder.record.name;
+  const traces::WorkTrace trace(name, flown.trace);
+  return interactive_page({name, trace, flown.folder, flown.result->trajectory,
+                           film_of(name, flown.film, traces::kTraceMemory)});
 }
 
 /// Milliseconds of a call on one core and on all, and their ratio.
@@ -199,19 +218,23 @@ std::string screen(const Flown& levio, const Flown& next, const std::string& wha
   if (options.data == "synthetic" && options.frames.empty())
     text += "levio's scale drifts on this flight, as the released program's (0.7-0.8 m)\n";
   text += fmt::format("{:<22}{:>9} {:>7}\n", "what if, levio", "front end", "a frame") + what_ifs;
-  const std::string page = std::filesystem::absolute(out).lexically_normal() / kReport;
+  const std::string folder = printable(std::filesystem::absolute(out).lexically_normal().string());
+  text += fmt::format("Both runs as a page: file://{}/{}\n", folder, kReport);
+  text += has_engine()
+              ? fmt::format("With sliders, and played: file://{}/{} and {}\n", folder,
+                            page_name(levio), page_name(next))
+              : "With sliders: tools/setup.sh pages; LEVIOSIM_WASM=ON tools/build.sh release\n";
   return text + fmt::format(
-                    "Both runs as a page: file://{1}\n"
                     "next: leviosim whatif {0}/levio\n"
                     "      leviosim why {0}/levio\n",
-                    printable(out), printable(page));
+                    printable(out));
 }
 
 void run(RunOptions options, const Arguments& words) {
   const ProgressLine::Style style = ProgressLine::style_of_stderr(options.quiet);
   outputs::OutputFolder out(out_request(options));
-  const Flown levio = fly(options, "levio", true, words, style);
-  const Flown next = fly(options, "next", false, words, style);
+  const Flown levio = fly(options, "levio", words, style);
+  const Flown next = fly(options, "next", words, style);
   const std::string text = screen(levio, next, what_ifs(levio.trace, style), options, options.out);
   const Allowed allowed = parse_allowed("profile");
   const std::string page = html_page(runs_report(
@@ -220,9 +243,14 @@ void run(RunOptions options, const Arguments& words) {
                     check_comparable(levio.folder.record, next.folder.record, allowed))},
       nullptr));
   publish(out, Printout(text), [&] {
-    write_run_folder(out, levio.folder, "levio/");
-    out.write(std::string("levio/") + kWorkTraceFile, levio.trace);
-    write_run_folder(out, next.folder, "next/");
+    for (const Flown* flown : {&levio, &next}) {
+      const std::string below = flown->result->profile + '/';
+      write_run_folder(out, flown->folder, below);
+      out.write(below + kWorkTraceFile, flown->trace);
+      if (!has_engine()) continue;
+      out.write(below + kFilmFile, flown->film);
+      out.write(page_name(*flown), page_of(*flown));
+    }
     out.write(kReport, page);
   });
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Compiles the replay engine of interactive pages to WebAssembly, with Debian's clang. CMake calls it
-# (option LEVIOSIM_WASM, preset wasm); packages: tools/setup.sh full.
+# (option LEVIOSIM_WASM, preset wasm); packages: tools/setup.sh pages.
 #   tools/wasm/build.sh OUTPUT.wasm     rooms are compiled side by side, each in one piece
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)

@@ -5,7 +5,7 @@ find_program(WASM_LINKER NAMES wasm-ld-14 wasm-ld REQUIRED)
 find_program(GZIP gzip REQUIRED)
 if(NOT EXISTS /usr/lib/llvm-14/include/wasm32-wasi/c++/v1 OR NOT EXISTS /usr/include/wasm32-wasi)
   message(FATAL_ERROR "LEVIOSIM_WASM needs the packages clang, lld, wasi-libc, libc++-14-dev-wasm32 and "
-                      "libclang-rt-14-dev-wasm32; tools/setup.sh full installs them")
+                      "libclang-rt-14-dev-wasm32; tools/setup.sh pages installs them")
 endif()
 file(GLOB_RECURSE engine_sources CONFIGURE_DEPENDS
   ${CMAKE_SOURCE_DIR}/sim/*.h ${CMAKE_SOURCE_DIR}/sim/*.cpp ${CMAKE_SOURCE_DIR}/platform_models/loader/*

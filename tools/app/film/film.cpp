@@ -91,9 +91,7 @@ void FilmWriter::add(const vio::FrameInput& input, const vio::FrameReport& repor
   write(traces::packed_section(out.bytes(), kLevel));
 }
 
-std::vector<FilmFrame> read_film(const std::filesystem::path& file, Bytes memory) {
-  const std::string name = file.string();
-  const std::string bytes = base::read_file(file, base::InputKind::film);
+std::vector<FilmFrame> film_of(const std::string& name, std::string_view bytes, Bytes memory) {
   traces::MemoryBudget budget(memory);
   std::vector<FilmFrame> film;
   for (const traces::Section& section : traces::sections_of(kKind, name, bytes)) {
@@ -114,10 +112,18 @@ std::vector<FilmFrame> read_film(const std::filesystem::path& file, Bytes memory
     }
     frame.points.resize(in.count("map points", sizeof(frame.points[0])));
     for (auto& point : frame.points)
-      for (std::int64_t& coordinate : point) coordinate = in.integer("a map point");
+      for (std::int64_t& coordinate : point) {
+        coordinate = in.integer("a map point");
+        if (std::abs(static_cast<double>(coordinate)) > 1000 * kMostMetres)
+          in.fail("a map point is farther away than 1000 km");
+      }
     in.expect_end();
   }
   return film;
+}
+
+std::vector<FilmFrame> read_film(const std::filesystem::path& file, Bytes memory) {
+  return film_of(file.string(), base::read_file(file, base::InputKind::film), memory);
 }
 
 }  // namespace leviosim::tools

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/base/units.h"
@@ -51,8 +52,11 @@ struct FilmFrame {
   std::vector<std::array<std::int64_t, 3>> points;  ///< [mm]
 };
 
+/// @param name    for messages
 /// @param memory  that the film may take
 /// @throws InputError for anything that is no whole film, naming the byte
+std::vector<FilmFrame> film_of(const std::string& name, std::string_view bytes, Bytes memory);
+/// The same of a file.
 std::vector<FilmFrame> read_film(const std::filesystem::path& file, Bytes memory);
 
 }  // namespace leviosim::tools

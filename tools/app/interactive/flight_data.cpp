@@ -9,12 +9,8 @@
 #include <vector>
 
 #include "sim/base/error.h"
-#include "sim/base/input_file.h"
-#include "tools/app/film/film.h"
 #include "tools/app/interactive/packing.h"
-#include "tools/app/run/run_folder.h"
 #include "tools/app/table/table_files.h"
-#include "traces/trajectories/trajectory.h"
 #include "traces/trajectories/trajectory_alignment.h"
 #include "workload/vio/frame_facts.h"
 
@@ -102,9 +98,48 @@ traces::Similarity alignment_of(const traces::Trajectory& poses, const Json& pat
   }
 }
 
-std::string film_text(const std::vector<FilmFrame>& film, const traces::Similarity& to_path) {
+/// Where the estimate was, beside the truth where there is one.
+Json path_of(const RecordedRun& run) {
+  if (!run.folder.tables.contains(kErrorsFile)) return path_of(run.poses);
+  return columns_of(run.folder, kErrorsFile,
+                    std::array{kStamp, Name(kEstimate[0]), Name(kEstimate[1]), Name(kEstimate[2]),
+                               Name("truth_x_m"), Name("truth_y_m"), Name("position_error_m")});
+}
+
+void expect_frames(const RecordedRun& run, const char* file, std::size_t number) {
+  const int frames = run.trace.frames();
+  if (number != static_cast<std::size_t>(frames))
+    throw InputError(fmt::format("{}/{}: has {} frames; expected {}, as {} has", run.name, file,
+                                 number, frames, kWorkTraceFile));
+}
+
+/// For people: of poses, of the map and why it is not good.
+Json words_json() {
+  Json words{{"sources", Json::object()}};
+  for (const vio::PoseSourceInfo& info : vio::kPoseSources)
+    words["sources"][std::string(info.name)] = info.words;
+  words["health"] = {{"names", vio::kHealthNames}, {"reasons", vio::kHealthReasons}};
+  return words;
+}
+
+}  // namespace
+
+Json flight_json(const RecordedRun& run) {
+  Json facts = columns_of(run.folder, kFramesFile, kFactColumns);
+  Json path = path_of(run);
+  const Json stamps = facts.at("t_ns");
+  expect_frames(run, kFramesFile, stamps.size());
+  for (Json* table : {&path, &facts}) number_frames(*table, stamps);
+  path.erase(kEstimate[2]);
+  return {{"facts", std::move(facts)}, {"path", std::move(path)}, {"words", words_json()}};
+}
+
+std::string film_text(const RecordedRun& run) {
+  if (run.film.empty()) return {};
+  expect_frames(run, kFilmFile, run.film.size());
+  const traces::Similarity to_path = alignment_of(run.poses, path_of(run));
   Json list = Json::array();
-  for (const FilmFrame& frame : film) {
+  for (const FilmFrame& frame : run.film) {
     Json features;
     for (std::size_t i = 0; i < kFeatureStates.size(); ++i)
       features[kFeatureStates[i]] = base64(frame.features[i]);
@@ -121,45 +156,6 @@ std::string film_text(const std::vector<FilmFrame>& film, const traces::Similari
         {{"image", base64(frame.image)}, {"features", features}, {"points", std::move(points)}});
   }
   return json_text(list);
-}
-
-/// For people: of poses, of the map and why it is not good.
-Json words_json() {
-  Json words{{"sources", Json::object()}};
-  for (const vio::PoseSourceInfo& info : vio::kPoseSources)
-    words["sources"][std::string(info.name)] = info.words;
-  words["health"] = {{"names", vio::kHealthNames}, {"reasons", vio::kHealthReasons}};
-  return words;
-}
-
-}  // namespace
-
-FlightData flight_data(const std::filesystem::path& folder, int frames, Bytes memory) {
-  const RunFolder run = read_run_folder(folder, true);
-  Json facts = columns_of(run, kFramesFile, kFactColumns);
-  const auto expect_frames = [&](const char* file, std::size_t number) {
-    if (number != static_cast<std::size_t>(frames))
-      throw InputError(fmt::format("{}: has {} frames; expected {}, as {} has",
-                                   (folder / file).string(), number, frames, kWorkTraceFile));
-  };
-  expect_frames(kFramesFile, facts.at("t_ns").size());
-  const traces::Trajectory poses = traces::read_tum(folder / kTrajectoryFile);
-  Json path = path_of(poses);
-  if (run.tables.contains(kErrorsFile))
-    path = columns_of(run, kErrorsFile,
-                      std::array{kStamp, Name(kEstimate[0]), Name(kEstimate[1]), Name(kEstimate[2]),
-                                 Name("truth_x_m"), Name("truth_y_m"), Name("position_error_m")});
-  FlightData data;
-  if (base::exists(folder / kFilmFile)) {
-    const std::vector<FilmFrame> film = read_film(folder / kFilmFile, memory);
-    expect_frames(kFilmFile, film.size());
-    data.film = film_text(film, alignment_of(poses, path));
-  }
-  path.erase(kEstimate[2]);
-  const Json stamps = facts.at("t_ns");
-  for (Json* table : {&path, &facts}) number_frames(*table, stamps);
-  data.flight = {{"facts", std::move(facts)}, {"path", std::move(path)}, {"words", words_json()}};
-  return data;
 }
 
 }  // namespace leviosim::tools

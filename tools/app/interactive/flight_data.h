@@ -2,22 +2,19 @@
 // where there is one, and the film.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
-#include "sim/base/units.h"
+#include "tools/app/interactive/interactive_page.h"
 #include "tools/app/table/json.h"
 
 namespace leviosim::tools {
 
-struct FlightData {
-  Json flight;       ///< {"facts": columns of frames.csv, "path": columns, "words"}
-  std::string film;  ///< [{"image", "features": {state: bytes}, "points": [x, y, …]}], or empty
-};
+/// {"facts": columns of frames.csv, "path": columns, "words"}
+/// @throws InputError for tables that lack columns, or are of other frames than the work
+Json flight_json(const RecordedRun& run);
 
-/// @param run     folder of a run
-/// @param frames  that its work has
-/// @throws InputError as the readers of its files, and for another number of frames
-FlightData flight_data(const std::filesystem::path& run, int frames, Bytes memory);
+/// [{"image", "features": {state: bytes}, "points": [x, y, …]}, …] in JSON; empty without a film.
+/// @throws InputError as flight_json()
+std::string film_text(const RecordedRun& run);
 
 }  // namespace leviosim::tools

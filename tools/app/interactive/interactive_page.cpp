@@ -16,9 +16,7 @@
 #include "tools/app/interactive/interactive_parts.h"
 #include "tools/app/interactive/knobs.h"
 #include "tools/app/interactive/packing.h"
-#include "tools/app/run/run_folder.h"
 #include "traces/work_traces/plain_file.h"
-#include "traces/work_traces/work_trace.h"
 
 namespace leviosim::tools {
 namespace {
@@ -70,8 +68,10 @@ std::string block(std::string_view id, std::string_view bytes) {
 
 }  // namespace
 
+bool has_engine() { return !interactive_part("engine").empty(); }
+
 void expect_engine() {
-  if (!interactive_part("engine").empty()) return;
+  if (has_engine()) return;
   throw InputError(
       "report --interactive: this leviosim was built without the engine of such pages; expected "
       "packages clang, lld, wasi-libc, libc++-14-dev-wasm32 and libclang-rt-14-dev-wasm32, then "
@@ -85,30 +85,36 @@ std::string interactive_page(const std::string& run, Bytes memory) {
     throw InputError(fmt::format("{}: holds no {}; expected the folder of a run with --record",
                                  printable(run), kWorkTraceFile));
   const traces::WorkTrace trace(file, memory);
-  const traces::WorkTraceInfo& info = trace.info();
-  platform::PlatformFile platform(file.string(), info.platform_yaml);
-  const platform::ResolvedPlatform chip = platform.resolve({});
+  std::vector<FilmFrame> film;
+  if (base::exists(folder / kFilmFile)) film = read_film(folder / kFilmFile, memory);
+  return interactive_page({run, trace, read_run_folder(folder, true),
+                           traces::read_tum(folder / kTrajectoryFile), film});
+}
 
-  FlightData flight = flight_data(folder, trace.frames(), memory);
+std::string interactive_page(const RecordedRun& run) {
+  const traces::WorkTraceInfo& info = run.trace.info();
+  platform::PlatformFile platform(run.trace.name(), info.platform_yaml);
+  const platform::ResolvedPlatform chip = platform.resolve({});
+  const std::string film = film_text(run);
   Json data =
       report_json(fmt::format("What if: {} on {}", info.profile, info.platform), Json::array());
-  data["interactive"] = {{"run", shell_word(run)},
+  data["interactive"] = {{"run", shell_word(run.name)},
                          {"profile", info.profile},
                          {"platform", info.platform},
                          {"data", info.data},
-                         {"frames", trace.frames()},
+                         {"frames", run.trace.frames()},
                          {"period_ns", info.frame_period_ns},
                          {"knobs", knobs_json(platform.schema(), chip, info.frame_period_ns)},
                          {"switches", switches_json(chip)},
                          {"mechanisms", mechanisms_json()},
-                         {"flight", std::move(flight.flight)},
+                         {"flight", flight_json(run)},
                          {"chip", json_of(base::parse_yaml(info.platform_yaml))}};
-  const std::string plain = traces::plain_file(trace, sim::code_of(chip.config));
+  const std::string plain = traces::plain_file(run.trace, sim::code_of(chip.config));
   return html_page(
       data, {interactive_scripts(),
              fmt::format("<style>\n{}</style>\n", interactive_part("interactive")) +
                  block("engine", interactive_part("engine")) + block("trace", gzipped(plain)) +
-                 (flight.film.empty() ? "" : block("film", gzipped(flight.film))),
+                 (film.empty() ? "" : block("film", gzipped(film))),
              " 'wasm-unsafe-eval'; worker-src blob:"});
 }
 

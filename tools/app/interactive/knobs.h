@@ -13,7 +13,8 @@
 namespace leviosim::tools {
 
 /// [{"path", "help", "unit", "values": ["64KiB", …] as -p takes them, "recorded": index}, …]
-/// and, where the page cannot move it, "fixed": why. @param period_ns  of the camera, whose rate "fps" is the last
+/// and, where the page cannot move it, "fixed": why. @param period_ns  of the camera, whose rate
+/// "fps" is the last
 Json knobs_json(const platform::Schema& schema, const platform::ResolvedPlatform& chip,
                 std::int64_t period_ns);
 

@@ -29,7 +29,7 @@ function themeDefaults() {
 const limitLines = {
   id: 'limitLines',
   /** Room for labels above the bars. */
-  beforeInit(chart, _, options) {
+  beforeUpdate(chart, _, options) {
     if ((options.lines || []).some(({axis}) => axis === 'x')) chart.options.layout = {padding: {top: 16}};
   },
   afterDatasetsDraw(chart, _, options) {

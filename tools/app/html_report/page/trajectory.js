@@ -18,10 +18,10 @@ function errorColour(share) {
   return `#${mixed.join('')}`;
 }
 
-/** Limits of both axes between which metres are as long in x as in y. */
-function equalAxes([left, right], [low, high], width, height) {
+/** Limits of both axes, `room` times as far apart, between which metres are as long in x as in y. */
+function equalAxes([left, right], [low, high], width, height, room) {
   const plot = {width: Math.max(50, width - 60), height: Math.max(50, height - 50)};
-  const perPixel = 1.12 * Math.max((right - left) / plot.width, (high - low) / plot.height, 1e-6);
+  const perPixel = room * Math.max((right - left) / plot.width, (high - low) / plot.height, 1e-6);
   const around = (from, to, pixels) => ({
     min: (from + to - perPixel * pixels) / 2,
     max: (from + to + perPixel * pixels) / 2,
@@ -46,8 +46,9 @@ function errorRamp(most) {
  * Upwards is the axis y, or z.
  * @param paths  [{name, errors}]; the truth, where there is one, is that of the longest
  * @param marks  () → datasets that are drawn over them @param onpick  as of chartFigure()
+ * @param room  of the axes, as a multiple of what the paths take
  */
-function pathFigure(paths, title, up, {marks = () => [], onpick} = {}) {
+function pathFigure(paths, title, up, {marks = () => [], onpick, room = 1.12} = {}) {
   const pointsOf = (errors, name) =>
       errors[`${name}_x_m`].map((x, i) => ({x, y: errors[`${name}_${up}_m`][i], i}));
   const longest = paths.reduce((a, b) => (b.errors.t_s.length > a.errors.t_s.length ? b : a));
@@ -57,7 +58,7 @@ function pathFigure(paths, title, up, {marks = () => [], onpick} = {}) {
   const all = [...truth, ...estimates.flatMap((e) => e.points)];
   const most = Math.max(0, ...paths.flatMap(({errors}) => errors.position_error_m || []));
   const axes = (width, height) =>
-      equalAxes(rangeOf(all.map((p) => p.x)), rangeOf(all.map((p) => p.y)), width, height);
+      equalAxes(rangeOf(all.map((p) => p.x)), rangeOf(all.map((p) => p.y)), width, height, room);
   const colourAt = (errors, i) =>
       errorColour(hasTruth ? errors.position_error_m[i] / (most || 1) : 0);
   const line = {showLine: true, borderWidth: 2, pointRadius: 0, pointHitRadius: 8, pointHoverRadius: 4};

@@ -33,5 +33,5 @@ function flightPath(path, film, state, onpick) {
     onpick(path.frame[distances.indexOf(Math.min(...distances))]);
   }
   return pathFigure(
-      [{name: 'estimate', errors: path}], 'Trajectory from above', 'y', {marks, onpick: pick});
+      [{name: 'estimate', errors: path}], 'Trajectory from above', 'y', {marks, onpick: pick, room: film ? 2 : 1.12});
 }
