@@ -205,6 +205,20 @@ TEST(NextRobustnessOf, StandsStillBeforeItsMapIsAligned) {
   }
 }
 
+/// What idling rotors shake is no motion, as images show: the vehicle rests on, and nothing of its
+/// path is in doubt.
+TEST(NextRobustnessOf, RestsOnWhileItsRotorsIdle) {
+  ShortFlight flight = draw_flight(PacedFlight(3, at_pace(0)), 4);
+  nudge(flight, 30, 80, 0.15f);  // 0.07 rad/s of standard deviation
+  const Flown flown = fly(flight, profile_named("next", 1));
+  ASSERT_TRUE(flown.finite);
+  EXPECT_LT(farthest(flown.trajectory), 1e-3);
+  for (std::size_t i = 30; i < 80; ++i) {
+    EXPECT_EQ(flown.sources[i], PoseSource::First) << i;
+    EXPECT_EQ(flown.health[i], Health::good) << i;
+  }
+}
+
 /// A gyro's bias below 0 there cannot be, so every map after the first frame's is refused.
 TEST(NextRobustnessOf, SaysWhenItsMapStartsAnew) {
   const ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1, 4)), 1);

@@ -108,11 +108,11 @@ TEST(MapVerdict, SaysSinceWhenAReasonHolds) {
     run.frames[i].health_reasons =
         bit(vio::HealthReason::FewInliers) | (i < 7 ? 0 : bit(vio::HealthReason::Drift));
   }
-  EXPECT_EQ(
-      map_faults(run),
-      (Texts{
-          fmt::format("too few matches agree with the pose (since frame {})", run.frames[0].index),
-          fmt::format("too much of the path is uncertain (since frame {})", run.frames[7].index)}));
+  EXPECT_EQ(map_faults(run),
+            (Texts{fmt::format("too few matches agree with the pose (since frame {})",
+                               run.frames[0].index),
+                   fmt::format("the length of the path is uncertain (since frame {})",
+                               run.frames[7].index)}));
 }
 
 TEST(MapVerdict, KnowsSinceWhenTheVehicleRests) {
@@ -120,6 +120,8 @@ TEST(MapVerdict, KnowsSinceWhenTheVehicleRests) {
   EXPECT_FALSE(figures_of(run).map.at_rest_since);
   for (std::size_t i = 12; i < run.frames.size(); ++i) run.frames[i].at_rest = 1;
   EXPECT_EQ(figures_of(run).map.at_rest_since, run.frames[12].index);
+  EXPECT_EQ(figures_of(run).value("map.at_rest_since"), run.frames[12].index);
+  EXPECT_EQ(map_faults(run), (Texts{fmt::format("at rest since frame {}", run.frames[12].index)}));
   run.frames.back().at_rest = 0;
   EXPECT_FALSE(figures_of(run).map.at_rest_since);
 }
@@ -187,7 +189,7 @@ TEST(MapVerdict, BelievesAnEstimatorThatDoubtsItself) {
   MapSigns signs;
   signs.health = 0;
   EXPECT_EQ(map_verdict(signs).grade, Grade::good);
-  signs.lost_frames = 3;
+  signs.lost.frames = 3;
   EXPECT_EQ(map_verdict(signs).grade, Grade::doubtful);
   signs.health = 1;
   EXPECT_EQ(map_verdict(signs).grade, Grade::doubtful);
@@ -202,8 +204,49 @@ TEST(MapVerdict, SaysWhyAnEstimatorDoubtsItself) {
   signs.health_reasons = bit(vio::HealthReason::FewInliers) | bit(vio::HealthReason::Drift);
   signs.reason_since[static_cast<std::size_t>(vio::HealthReason::Drift)] = 1335;
   EXPECT_EQ(map_verdict(signs).reason(),
-            "too few matches agree with the pose (since frame 0), too much of the path is "
+            "too few matches agree with the pose (since frame 0), the length of the path is "
             "uncertain (since frame 1335)");
+}
+
+/// In metres, which say whether it matters; a share of next to nothing does not.
+TEST(MapVerdict, SaysInMetresHowUncertainAPathIs) {
+  RunResult run = long_run(0.001);
+  run.frames.back().path_mm = 34;
+  run.frames.back().path_deviation_mm = 3;
+  EXPECT_EQ(map_faults(run), Texts());
+  EXPECT_EQ(figures_of(run).value("map.path"), 0.034);
+  EXPECT_EQ(figures_of(run).value("map.path_deviation"), 0.003);
+  const std::string summary = run_summary("a run", run, 80);
+  EXPECT_NE(summary.find("path uncertain by 0.00 m"), std::string::npos) << summary;
+  run.frames.back().path_deviation_mm = 12;
+  EXPECT_EQ(map_grade(run), Grade::good);
+  EXPECT_EQ(map_faults(run), (Texts{"0.03 m of path, uncertain by 0.01 m"}));
+  run.frames.back().health = static_cast<int>(vio::Health::unreliable);
+  run.frames.back().health_reasons = bit(vio::HealthReason::Drift);
+  EXPECT_EQ(map_grade(run), Grade::doubtful);
+  EXPECT_EQ(map_faults(run),
+            (Texts{fmt::format("0.03 m of path, uncertain by 0.01 m (since frame {})",
+                               run.frames.back().index)}));
+}
+
+/// Of a map that has proved itself again.
+TEST(MapVerdict, SaysInWhichFramesAnEstimatorDoubtedItselfBefore) {
+  RunResult run = long_run(0.001);
+  const auto doubt = [&](std::size_t i, vio::HealthReason reason) {
+    run.frames[i].health = static_cast<int>(vio::Health::unreliable);
+    run.frames[i].health_reasons |= bit(reason);
+  };
+  const auto frame = [&](std::size_t i) { return run.frames[i].index; };
+  for (std::size_t i = 20; i < 44; ++i) doubt(i, vio::HealthReason::Blind);
+  EXPECT_EQ(map_grade(run), Grade::good);
+  EXPECT_EQ(map_faults(run),
+            (Texts{fmt::format("no landmark has been seen for a while (frames {} to {})", frame(20),
+                               frame(43))}));
+  doubt(60, vio::HealthReason::Blind);
+  doubt(3, vio::HealthReason::NoScale);  // of a guess
+  EXPECT_EQ(map_faults(run),
+            (Texts{fmt::format("no landmark has been seen for a while (25 of frames {} to {})",
+                               frame(20), frame(60))}));
 }
 
 TEST(MapVerdict, WithoutTruthAndWithoutHealthNothingIsJudged) {

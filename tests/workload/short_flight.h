@@ -233,15 +233,15 @@ inline void cut_imu(ShortFlight& flight, std::size_t first, std::size_t last) {
   flight.frames[last].imu.front().dt += missing;
 }
 
-/// Pushed and shaken, by less than a camera can see.
-inline void nudge(ShortFlight& flight, std::size_t first, std::size_t last) {
+/// Pushed and shaken, by less than a camera can see. @param share  of 0.4 rad/s and 3 m/s²
+inline void nudge(ShortFlight& flight, std::size_t first, std::size_t last, float share = 1) {
   double t_s = 0;
   for (std::size_t i = first; i < last; ++i)
     for (ImuInput& s : flight.frames[i].imu) {
       const auto wave = static_cast<float>(std::sin(2 * M_PI * 10 * (t_s += 0.005)));
       for (int a = 0; a < 3; ++a) {
-        s.gyro[a] += 0.4f * wave;
-        s.accel[a] += 3.0f * wave;
+        s.gyro[a] += 0.4f * share * wave;
+        s.accel[a] += 3.0f * share * wave;
       }
     }
 }

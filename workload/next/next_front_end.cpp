@@ -74,7 +74,8 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
     if (const std::optional<Vec3<P>> held = held_position()) frame.T_world_camera.t = *held;
   complete<P>(state_, frame, report);
   if (initialises()) report.state = static_cast<int>(PoseState::Initialising);
-  report.at_rest = inertial_.rest() || images_rest() ? 1 : 0;
+  if (inertial_.rest() || images_rest()) report.at_rest = 1;
+  rested_ = report.source == PoseSource::First;
   if (loop_) loop_->correct(frame, frame.dt, report);
   return report;
 }
@@ -282,20 +283,28 @@ void NextFrontEnd<P>::locate(TrackedFrame<P>& frame, FrameReport& report) {
   frame.T_world_camera = held_at_rest(*pose);
 }
 
-/// Where it is better than the 8-point algorithm, which guesses the length of its translation: the
-/// IMU measures it, and with a single keyframe any length is a guess, which waits for a parallax
-/// that is worth one.
+/// A vehicle that rested at the only keyframe, and has not moved in any image since, still rests
+/// there, whatever the IMU says, which feels idling rotors. Else by the IMU, which measures the
+/// length of the translation, where the 8-point algorithm guesses it. With a single keyframe any
+/// length is a guess, which waits for a parallax that is worth one.
 template <class P>
 std::optional<Pose<P>> NextFrontEnd<P>::pose_by_prediction(const TrackedFrame<P>& frame,
                                                            FrameReport& report) {
-  if (prediction_.imu_predicts()) {
+  const bool one_keyframe = has_one_keyframe(), by_imu = prediction_.imu_predicts();
+  if (one_keyframe) {
+    const auto stage = state_.machine.stage(stages::kGuided);
+    const std::optional<Pose<P>> still = still_pose(frame);
+    const bool rests = rested_ && rests_;
+    report.at_rest = rests ? 1 : 0;
+    report.source = rests ? PoseSource::First : PoseSource::Predicted;
+    if (still && (rests || by_imu)) return still;
+  }
+  if (by_imu) {
     const auto stage = state_.machine.stage(stages::kGuided);
     report.source = PoseSource::Predicted;
-    if (has_one_keyframe())
-      if (const std::optional<Pose<P>> still = still_pose(frame)) return still;
     return inertial_.predicted_pose();
   }
-  if (has_one_keyframe() && !is_keyframe(frame, report)) {
+  if (one_keyframe && !is_keyframe(frame, report)) {
     const auto stage = state_.machine.stage(stages::kGuided);
     report.source = PoseSource::Kept;
     return Pose<P>{prediction_.by_motion(frame).R, frame.T_world_last.t};
@@ -323,12 +332,13 @@ std::optional<Pose<P>> NextFrontEnd<P>::still_pose(const Frame<P>& frame) {
 }
 
 /// Whether the images have shown rest for as long as the IMU must. It may see rotors that idle, but
-/// no turns.
+/// no turns, and must feel gravity.
 template <class P>
 bool NextFrontEnd<P>::images_rest() const {
   const RestOptions& limits = state_.profile.rest;
   return rests_ && state_.time_since_keyframe > limits.image_time &&
-         work::value(inertial_.recent().gyro_variance) < limits.gyro_stddev * limits.gyro_stddev;
+         work::value(inertial_.recent().gyro_variance) < limits.gyro_stddev * limits.gyro_stddev &&
+         inertial_.recent_may_be_rest();
 }
 
 /// The frame's pose with an orthonormal rotation; at rest, the pose of the frame before. The IMU

@@ -67,8 +67,9 @@ class NextFrontEnd : public FrontEnd<P> {
   InitialPath<P> path_;              ///< frames before the end of the alignment
   float settling_ = 0;               ///< time since its alignment, s
   typename P::U32 sum_;              ///< over the features of the frame before
-  bool still_ = false;  ///< the images say that the camera has not moved since the keyframe
-  bool rests_ = false;  ///< … and has not turned either
+  bool still_ = false;   ///< the images say that the camera has not moved since the keyframe
+  bool rests_ = false;   ///< … and has not turned either
+  bool rested_ = false;  ///< the frame before began a map, or rested where it began
   ImageRest rest_;
 };
 

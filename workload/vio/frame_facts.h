@@ -102,7 +102,7 @@ inline constexpr std::array<std::string_view, 7> kHealthReasons{
     "no landmark has been seen for a while",
     "too few matches agree with the pose",
     "the accelerometer would have a bias that no sensor has",
-    "too much of the path is uncertain",
+    "the length of the path is uncertain",
     "the map was begun again"};
 
 constexpr int bit(HealthReason reason) { return 1 << static_cast<int>(reason); }
@@ -119,10 +119,12 @@ struct FrameFacts {
   int places = 0;
   int places_removed = 0;
   int loop_closures = 0;
-  int health = 0;          ///< as Health numbers it
-  int health_reasons = 0;  ///< bits of HealthReason; 0 for a map that is good or not judged
-  int at_rest = 0;         ///< 1: images and IMU show that the vehicle neither moves nor turns
-  int state = 0;           ///< of the pose, as PoseState numbers it
+  int health = 0;             ///< as Health numbers it
+  int health_reasons = 0;     ///< bits of HealthReason; 0 for a map that is good or not judged
+  int path_mm = 0;            ///< length of the path so far, guesses excepted [mm]
+  int path_deviation_mm = 0;  ///< its standard deviation, as the estimator knows it [mm]
+  int at_rest = 0;  ///< 1: images, and the IMU but for idling rotors, show that the vehicle rests
+  int state = 0;    ///< of the pose, as PoseState numbers it
 
   PoseState pose_state() const { return static_cast<PoseState>(state); }
 };
@@ -164,6 +166,11 @@ inline constexpr std::array kFrameFacts{
         "why it is 1 or 2, summed: 1 no scale yet, 2 images and IMU contradict each other, 4 no "
         "landmark seen, 8 few matches agree, 16 accelerometer bias, 32 drift, 64 begun again",
         &FrameFacts::health_reasons, false},
+    FrameFact{"path_mm", "length of the path so far, guesses excepted, mm", &FrameFacts::path_mm,
+              false},
+    FrameFact{"path_deviation_mm",
+              "standard deviation of that length, as the estimator knows it, mm",
+              &FrameFacts::path_deviation_mm, false},
     FrameFact{"at_rest", "the vehicle rests, as images and IMU show it", &FrameFacts::at_rest},
     FrameFact{"state", "what the pose is worth: located, predicted, kept, initialising (a guess)",
               &FrameFacts::state, false, kPoseStateNames},

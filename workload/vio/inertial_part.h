@@ -43,6 +43,8 @@ class InertialPart {
   bool rest_is_rejected() const { return rest_is_rejected_; }
   /// The same means, whether it stands still or not.
   const Stillness<P>& recent() const { return recent_; }
+  /// Whether these can be a bias and gravity.
+  bool recent_may_be_rest() const { return may_be_rest(recent_); }
 
  private:
   ImuNoise noise_of(const ImuInput& sample) const;

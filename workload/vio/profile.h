@@ -92,13 +92,11 @@ struct HealthOptions {
   float mean_square = 4;
   float accel_bias = 5;        ///< accelerometer bias, in standard deviations of the prior
   float lost_accel_bias = 10;  ///< the same, from which on the poses are of no use
-  float memory_s =
-      1;  ///< time for which an inconsistent window counts and tracking is averaged [s]
+  /// Time for which an inconsistent window and changes of the path's length count, and tracking is
+  /// averaged [s].
+  float memory_s = 1;
   float tracked = 0.7f;  ///< least share of the matches that agree with the pose
   float drift = 0.1f;    ///< uncertainty of the path, as a share of its length
-  /// Uncertainty of the scale, as a share of the changes that windows made to the path's length in
-  /// memory_s: a single correction ends, while a map in a wrong minimum goes on changing.
-  float corrected = 0.3f;
   float blind_s = 0.5f;  ///< longest time for which the IMU alone may move the pose on [s]
   // Errors of a pose that the IMU alone has moved on.
   float blind_velocity = 0.05f;      ///< velocity [m/s]

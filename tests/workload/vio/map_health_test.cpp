@@ -22,6 +22,7 @@ class MapHealthOf : public ::testing::Test {
     report.world_matches = 100;
     report.inliers = inliers_;
     report.map_restarts = restarts;
+    report.at_rest = at_rest_;
     report.earlier = earlier_;
     report.p_world_camera = {0.1f * static_cast<float>(++frames_), 0, 0};
     return health_.after_frame(report, kFrame);
@@ -53,6 +54,7 @@ class MapHealthOf : public ::testing::Test {
   MapHealth health_{profile_, map_};
   std::vector<EarlierPose> earlier_;
   int inliers_ = 95;
+  int at_rest_ = 0;
   int frames_ = 0;
 };
 
@@ -125,18 +127,47 @@ TEST_F(MapHealthOf, AMapThatBeginsAtRestLeavesThePathWithTheScaleThatWasKnown) {
 TEST_F(MapHealthOf, GuessesBeforeAMapThatBeginsAtRestAreNoPath) {
   map_.aligned = false;
   frames(40, PoseSource::Initialising);
+  EXPECT_EQ(health_.path(), 0);
   frame(PoseSource::First);
   map_.aligned = true;
   EXPECT_EQ(frame(PoseSource::First), Health::good);
   frames(10, PoseSource::Predicted);
+  EXPECT_NEAR(health_.path(), 1.0f, 0.01f);  // and not five
   EXPECT_EQ(frame(PoseSource::Tracked), Health::unreliable);
+}
+
+/// Then the IMU alone is wrong by what its acceleration is, not by a velocity that nobody knows.
+TEST_F(MapHealthOf, TheVelocityAfterRestIsKnown) {
+  const auto blind_from = [&](int at_rest) {
+    const float before = health_.path_deviation();
+    at_rest_ = at_rest;
+    frame(at_rest > 0 ? PoseSource::First : PoseSource::Tracked);
+    at_rest_ = 0;
+    frames(10, PoseSource::Predicted);
+    return health_.path_deviation() - before;
+  };
+  const float after_rest = blind_from(1);
+  EXPECT_NEAR(after_rest, 0.5f * profile_.health.blind_acceleration * 0.5f * 0.5f, 1e-3f);
+  frame();
+  EXPECT_NEAR(blind_from(0), after_rest + 0.5f * profile_.health.blind_velocity, 1e-3f);
+}
+
+/// What is less than the noise of poses is not seen, however short the path is.
+TEST_F(MapHealthOf, APathIsNotUncertainByLessThanTheNoiseOfPoses) {
+  window({.scale_sigma = 0.3f});
+  EXPECT_EQ(frames(2), Health::good);  // 0.03 m of 0.1 m: the first frame is where it begins
+  EXPECT_NEAR(health_.path(), 0.1f, 1e-4f);
+  EXPECT_NEAR(health_.path_deviation(), 0.03f, 1e-3f);
+  EXPECT_EQ(frame(), Health::unreliable);  // 0.06 m of 0.2 m
 }
 
 /// A map in a wrong minimum is sure of what it found, and wanders on.
 TEST_F(MapHealthOf, AScaleThatWindowsChangeAgainAndAgainIsUncertainForAWhile) {
   window({.scale_sigma = 0.03f});
-  for (int i = 0; i < 40; ++i) EXPECT_EQ(correcting(20, i % 2 == 0 ? 1 : 1.005f), Health::good);
+  for (int i = 0; i < 40; ++i) EXPECT_EQ(correcting(20, i % 2 == 0 ? 1 : 1.02f), Health::good);
   float scale = 1.2f;
+  EXPECT_EQ(correcting(20, scale), Health::unreliable);
+  for (int i = 0; i < 20; ++i) correcting(20, scale);
   EXPECT_EQ(correcting(20, scale), Health::good);  // one correction comes to rest
   for (int i = 0; i < 10; ++i) correcting(20, scale *= 0.95f);
   EXPECT_EQ(correcting(20, scale), Health::unreliable);

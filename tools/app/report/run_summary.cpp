@@ -185,8 +185,8 @@ std::vector<std::string> trajectory_lines(const RunResult& run) {
       run.frames.begin(), run.frames.end(),
       [](const FrameResult& frame) { return frame.source == PoseSource::Initialising; });
   if (initialising > 0) again += fmt::format(", initialising for {} frames", initialising);
-  if (const std::optional<int> rests = figures_of(run).map.at_rest_since)
-    again += fmt::format(", at rest since frame {}", *rests);
+  if (const std::optional<double> deviation = figures_of(run).map.path_deviation_m)
+    again += fmt::format(", path uncertain by {} m", readable(*deviation, 2));
   const std::string length = fmt::format("trajectory: {} poses, {}", run.trajectory.size(),
                                          metres(path_length(run.trajectory), 2));
   if (const std::string why = why_incomparable(run); !why.empty())

@@ -55,6 +55,8 @@ RecordedFrame recorded(const FrameResult& frame) {
   row.map_restarts = frame.map_restarts;
   row.health = frame.health;
   row.health_reasons = frame.health_reasons;
+  row.path_mm = frame.path_mm;
+  row.path_deviation_mm = frame.path_deviation_mm;
   row.state = frame.pose_state();
   row.at_rest = frame.at_rest > 0;
   return row;
@@ -153,6 +155,40 @@ void add_guesses(const std::vector<RecordedFrame>& frames, MapSigns& signs) {
     signs.located_from = located->number;
 }
 
+/// The frames that are so, from the first to the last.
+template <class Is>
+FrameSpan span_of(const std::vector<RecordedFrame>& frames, const Is& is) {
+  FrameSpan span;
+  for (const RecordedFrame& frame : frames) {
+    if (!is(frame)) continue;
+    if (span.frames++ == 0) span.first = frame.number;
+    span.last = frame.number;
+  }
+  return span;
+}
+
+/// Why the estimator does not trust its map at the end, and did not before.
+void add_reasons(const std::vector<RecordedFrame>& frames, MapSigns& signs) {
+  signs.health = frames.back().health;
+  signs.health_reasons = frames.back().health_reasons;
+  for (std::size_t i = 0; i < signs.reason_since.size(); ++i) {
+    const auto holds = [&](const RecordedFrame& f) { return (f.health_reasons >> i & 1) != 0; };
+    signs.reason_since[i] = since(frames, holds).value_or(0);
+    const FrameSpan span = span_of(frames, holds);
+    if (span.frames > 0 && !holds(frames.back())) signs.past_reasons[i] = span;
+  }
+  signs.lost = span_of(frames, [](const RecordedFrame& f) {
+    return f.health == static_cast<int>(vio::Health::lost);
+  });
+}
+
+/// How well the estimator knows the length of its path; nothing where it is not judged.
+void add_path(const RecordedFrame& last, MapSigns& signs) {
+  if (last.path_mm == 0 && last.path_deviation_mm == 0) return;
+  signs.own_path_m = 1e-3 * last.path_mm;
+  signs.path_deviation_m = 1e-3 * last.path_deviation_mm;
+}
+
 /// What frames and the ground truth say.
 MapSigns map_signs(const std::vector<RecordedFrame>& frames, const TruthSigns& truth,
                    std::int64_t poses_left_out) {
@@ -169,20 +205,13 @@ MapSigns map_signs(const std::vector<RecordedFrame>& frames, const TruthSigns& t
   signs.ends_without_pose =
       last.source == PoseSource::Kept || last.source == PoseSource::Initialising;
   signs.duration_s = static_cast<double>(last.t_ns - processed.front().t_ns) * 1e-9;
-  signs.health = last.health;
-  signs.health_reasons = last.health_reasons;
+  add_reasons(processed, signs);
+  add_path(last, signs);
   double features = 0;
   for (const RecordedFrame& frame : processed) {
     features += frame.features;
     signs.restarts += frame.map_restarts;
-    if (frame.health != static_cast<int>(vio::Health::lost)) continue;
-    if (signs.lost_frames++ == 0) signs.lost.first = frame.number;
-    signs.lost.last = frame.number;
   }
-  for (std::size_t i = 0; i < signs.reason_since.size(); ++i)
-    signs.reason_since[i] = since(processed, [&](const RecordedFrame& f) {
-                              return (f.health_reasons >> i & 1) != 0;
-                            }).value_or(0);
   signs.at_rest_since = since(processed, [](const RecordedFrame& f) { return f.at_rest; });
   add_guesses(processed, signs);
   signs.features = features / static_cast<double>(processed.size());
@@ -218,6 +247,17 @@ void complete(RunFigures& run, const std::vector<RecordedFrame>& frames) {
                        run.value("accuracy.size_ratio"), run.value("accuracy.ate.located")},
                       std::max<std::int64_t>(0, std::llround(left_out)));
   run.map.has_poses = poses.has_value();
+  if (run.map.own_path_m) {
+    run.statistics.push_back(
+        {"map.path", "m", "length of the path as the estimator knows it", run.map.own_path_m});
+    run.statistics.push_back({"map.path_deviation", "m",
+                              "standard deviation of that length, as the estimator knows it",
+                              run.map.path_deviation_m});
+  }
+  if (run.map.at_rest_since)
+    run.statistics.push_back({"map.at_rest_since", "1",
+                              "the frame from which on the vehicle rests until the end",
+                              *run.map.at_rest_since});
   run.verdicts = verdicts_of(run);
   for (const RunVerdict& verdict : run.verdicts.list)
     run.statistics.push_back({fmt::format("verdict.{}", verdict.about),

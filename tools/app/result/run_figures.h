@@ -59,6 +59,8 @@ struct RecordedFrame {
   int map_restarts = 0;
   std::optional<int> health;  ///< of the map, as vio::Health numbers it; absent if not recorded
   int health_reasons = 0;     ///< bits of vio::HealthReason
+  int path_mm = 0;            ///< length of the path so far, as the estimator knows it [mm]
+  int path_deviation_mm = 0;  ///< standard deviation of that length [mm]
   vio::PoseState state = vio::PoseState::Located;  ///< of its pose
   bool at_rest = false;
 };
@@ -71,10 +73,11 @@ struct TruthSigns {
   std::optional<double> located_m;  ///< error_m without guesses, if there are any
 };
 
-/// Frames in a row, by their numbers.
+/// Frames, by their numbers.
 struct FrameSpan {
   int first = 0;
   int last = 0;
+  std::int64_t frames = 0;  ///< those of them that are meant
 };
 
 /// Evidence for the verdict on the map.
@@ -92,10 +95,13 @@ struct MapSigns {
   int health_reasons = 0;           ///< likewise
   /// By number of the reason: the frame from which on it holds until the end.
   std::array<int, vio::kHealthReasons.size()> reason_since{};
-  std::int64_t lost_frames = 0;      ///< frames of health 2, lost
-  FrameSpan lost;                    ///< from the first to the last of them
-  std::int64_t guesses = 0;          ///< poses from before there was a map
-  std::optional<int> located_from;   ///< the frame after all guesses, if they come first
+  /// By number of the reason: the frames in which it held, if it does not any more at the end.
+  std::array<std::optional<FrameSpan>, vio::kHealthReasons.size()> past_reasons{};
+  std::optional<double> own_path_m;        ///< length of the path as the estimator knows it
+  std::optional<double> path_deviation_m;  ///< standard deviation of that length
+  FrameSpan lost;                          ///< frames of health 2, lost
+  std::int64_t guesses = 0;                ///< poses from before there was a map
+  std::optional<int> located_from;         ///< the frame after all guesses, if they come first
   std::optional<int> at_rest_since;  ///< the frame from which on the vehicle rests until the end
 };
 

@@ -110,17 +110,45 @@ std::optional<RunVerdict> memory_verdict(const RunFigures& run) {
   return verdict;
 }
 
+/// "0.03 m of path, uncertain by 0.01 m".
+std::string path_text(const MapSigns& signs) {
+  return fmt::format("{} m of path, uncertain by {} m", readable(*signs.own_path_m, 2),
+                     readable(*signs.path_deviation_m, 2));
+}
+
+std::string text_of(vio::HealthReason reason, const MapSigns& signs) {
+  if (reason == vio::HealthReason::Drift && signs.own_path_m) return path_text(signs);
+  return std::string(vio::kHealthReasons[static_cast<std::size_t>(reason)]);
+}
+
 /// Why the estimator ends with a map that is not good.
 std::vector<std::string> reasons_of(vio::Health health, const MapSigns& signs) {
   std::vector<std::string> reasons;
   for (std::size_t i = 0; i < vio::kHealthReasons.size(); ++i)
     if ((signs.health_reasons >> i & 1) != 0)
-      reasons.push_back(
-          fmt::format("{} (since frame {})", vio::kHealthReasons[i], signs.reason_since[i]));
+      reasons.push_back(fmt::format("{} (since frame {})",
+                                    text_of(static_cast<vio::HealthReason>(i), signs),
+                                    signs.reason_since[i]));
   if (reasons.empty())  // replays of traces that do not have them
     reasons.push_back(fmt::format("the estimator ends with a map that is {}",
                                   vio::kHealthNames[static_cast<std::size_t>(health)]));
   return reasons;
+}
+
+/// "frames 20 to 44", or "12 of frames 20 to 44".
+std::string frames_text(const FrameSpan& span) {
+  const bool all = span.frames == span.last - span.first + 1;
+  if (span.frames == 1) return fmt::format("frame {}", span.first);
+  return fmt::format("{}frames {} to {}", all ? "" : fmt::format("{} of ", span.frames), span.first,
+                     span.last);
+}
+
+/// What the estimator doubted for a while; guesses are named apart.
+void add_past_reasons(const MapSigns& signs, std::vector<std::string>& reasons) {
+  for (std::size_t i = 0; i < signs.past_reasons.size(); ++i)
+    if (signs.past_reasons[i] && static_cast<vio::HealthReason>(i) != vio::HealthReason::NoScale)
+      reasons.push_back(
+          fmt::format("{} ({})", vio::kHealthReasons[i], frames_text(*signs.past_reasons[i])));
 }
 
 /// How far a scale is off, in either direction.
@@ -213,6 +241,12 @@ std::string guesses_text(const MapSigns& signs) {
   return fmt::format("from frame {} on; {} before {}", *signs.located_from, poses, are);
 }
 
+/// Whether the path is so short that a share of it says nothing, and no reason has named it.
+bool is_uncertain(const MapSigns& signs, const MapLimits& limits) {
+  return signs.own_path_m && (signs.health_reasons & bit(vio::HealthReason::Drift)) == 0 &&
+         *signs.path_deviation_m > limits.error_share * *signs.own_path_m;
+}
+
 }  // namespace
 
 RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
@@ -235,11 +269,15 @@ RunVerdict map_verdict(const MapSigns& signs, const MapLimits& limits) {
   if (health == vio::Health::unreliable || health == vio::Health::lost)
     for (std::string& reason : reasons_of(health, signs))
       fault(health == vio::Health::lost, std::move(reason));
-  else if (signs.lost_frames > 0)
+  else if (signs.lost.frames > 0)
     fault(false, fmt::format("the estimator had lost its map in {} frames, from {} to {}",
-                             signs.lost_frames, signs.lost.first, signs.lost.last));
+                             signs.lost.frames, signs.lost.first, signs.lost.last));
   if (signs.poses_left_out > 0) fault(true, fmt::format("{} poses are NaN", signs.poses_left_out));
   if (signs.guesses > 0) verdict.reasons.push_back(guesses_text(signs));
+  if (is_uncertain(signs, limits)) verdict.reasons.push_back(path_text(signs));
+  add_past_reasons(signs, verdict.reasons);
+  if (signs.at_rest_since)
+    verdict.reasons.push_back(fmt::format("at rest since frame {}", *signs.at_rest_since));
   if (verdict.grade > Grade::unknown && signs.features && *signs.features < limits.features)
     verdict.reasons.push_back(
         fmt::format("images have {} features on average", readable(*signs.features, 1)));

@@ -1,5 +1,7 @@
 #include "workload/vio/odometry/odometry.h"
 
+#include <limits>
+
 #include "workload/levio/levio_front_end.h"
 #include "workload/next/loop/loop_closer.h"
 #include "workload/next/next_front_end.h"
@@ -17,6 +19,12 @@ struct Reservation {
     l2.alloc<work::Native::Span<std::uint8_t>>(kPersistentBlock, static_cast<int>(bytes.count()));
   }
 };
+
+/// Of a length in metres; the largest number of what is larger, or no number.
+int in_mm(float length) {
+  constexpr float kMost = 2e6f;
+  return length < kMost ? static_cast<int>(1e3f * length + 0.5f) : std::numeric_limits<int>::max();
+}
 
 /// To hundredths of a pixel, as the release states the camera of its optimiser
 /// (PARAMETERS.md#input); the other stages take the calibration as it is. Not by a function of the
@@ -80,6 +88,8 @@ class OdometryOf : public Odometry {
     FrameReport report = front_end_->process(input);
     report.health = static_cast<int>(health_.after_frame(report, input.dt));
     report.health_reasons = health_.reasons();
+    report.path_mm = in_mm(health_.path());
+    report.path_deviation_mm = in_mm(health_.path_deviation());
     return report;
   }
   bool begin_optimisation() override { return back_end_.begin(); }
