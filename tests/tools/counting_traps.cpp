@@ -1,5 +1,5 @@
-// Kernels that go round the work counters, for tests/tools/check_counting_test.py: each line with a comment
-// `trap: …` is one, and nothing else here is. Compiled by nobody.
+// Kernels that go round the work counters, for tests/tools/check_counting_test.py: each line with a
+// comment `trap: …` is one, and nothing else here is. Compiled by nobody.
 #include <array>
 #include <cstring>
 
@@ -30,7 +30,8 @@ struct Kernels {
 
   static I reads_pointer(const Byte* pixels, int count) {
     I sum = 0;
-    for (int x : P::range(0, count)) sum += I(static_cast<int>(pixels[x]));  // trap: a plain pointer
+    for (int x : P::range(0, count))
+      sum += I(static_cast<int>(pixels[x]));  // trap: a plain pointer
     return sum;
   }
 
@@ -56,11 +57,11 @@ struct Kernels {
 
   static I iterates_plainly(Span<const Byte> row, int n) {
     I sum = 0;
-    for (int x = 0; x < n; ++x) sum += I(row[x]);  // trap: a loop on plain numbers
+    for (int x = 0; x < n; ++x) sum += I(row[x]);         // trap: a loop on plain numbers
     for (int x = row.size(); x > 0; x -= 2) sum += I(1);  // trap: a loop on plain numbers
     int left = n;
     while (left-- > 0) sum += I(1);  // trap: a loop on plain numbers
-    do sum += I(1);  // trap: a loop on plain numbers
+    do sum += I(1);                  // trap: a loop on plain numbers
     while (++left < n);
     return sum;
   }

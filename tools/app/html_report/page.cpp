@@ -54,13 +54,14 @@ Json report_json(const std::string& title, Json runs) {
 
 std::string html_page(const Json& data) {
   return html_page(data, {scripts({"frames", "stages", "memory", "energy", "runs", "compare",
-                                    "check", "study", "history", "main"}),
+                                   "check", "study", "history", "main"}),
                           "", ""});
 }
 
 std::string html_page(const Json& data, const PageScripts& others) {
   PageScripts with_shared = others;
-  with_shared.scripts = scripts({"dom", "table", "charting", "figures", "trajectory"}) + others.scripts;
+  with_shared.scripts =
+      scripts({"dom", "table", "charting", "figures", "trajectory"}) + others.scripts;
   std::string page;
   std::string_view rest = part("template");
   for (std::size_t begin = rest.find("{{"); begin != std::string_view::npos;

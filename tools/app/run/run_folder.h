@@ -12,8 +12,8 @@
 //   cycles.csv       where the cycles of each stage went, as in run.json
 //   trajectory.tum   poses of the body, for evo and rpg_trajectory_evaluation
 //   work.trace       with --record: all work (traces/work_traces/work_trace.h), for leviosim replay
-//   flight.film      with --film: images and features (tools/app/film/film.h), for interactive pages
-//   replay.csv       of a replay: how each frame began, in the recording and now
+//   flight.film      with --film: images and features (tools/app/film/film.h), for interactive
+//   pages replay.csv       of a replay: how each frame began, in the recording and now
 //
 // A native run has no platform.yaml, stages.csv, memory.csv, energy.csv and cycles.csv, and no
 // timing columns. A platform without energy figures leaves no energy.csv. Programs read run.json;
