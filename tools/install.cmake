@@ -8,10 +8,11 @@ include(CMakePackageConfigHelpers)
 
 # Before what is not built yet is missed: what to build.
 function(leviosim_install_needs target component)
+  list(JOIN ARGN " " targets)
   install(CODE "
     if(NOT EXISTS \"$<TARGET_FILE:${target}>\")
-      message(FATAL_ERROR \"${target} is not built; what is installed is built by: \"
-        \"cmake --build ${CMAKE_BINARY_DIR} --target ${ARGN}\")
+      message(FATAL_ERROR \"${target} is not built; what builds what is installed:\n\"
+        \"  cmake --build ${CMAKE_BINARY_DIR} --target ${targets}\")
     endif()" COMPONENT ${component})
 endfunction()
 

@@ -12,7 +12,9 @@ import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
+from unittest import mock
 
 PROGRAM, MODULE, EXAMPLES = sys.argv[1:4]
 BUILD = os.path.dirname(PROGRAM)
@@ -92,6 +94,22 @@ class Module(unittest.TestCase):
         self.assertNotIn("np", dir(leviosim))
         with self.assertRaisesRegex(leviosim.InputError, "expected the folder of a run"):
             leviosim.load(DATA + "-none")
+
+    def test_plot_draws_all_frames_or_says_what_it_needs(self):
+        run = leviosim.run(leviosim.Platform("gap9"), data=DATA, frames="0:4")
+        pyplot = types.ModuleType("matplotlib.pyplot")
+        drawn = []
+        pyplot.gca = lambda: types.SimpleNamespace(plot=lambda x, y: drawn.append((x, y)), set=lambda **labels: None)
+        matplotlib = types.ModuleType("matplotlib")
+        matplotlib.pyplot = pyplot
+        with mock.patch.dict(sys.modules, {"matplotlib": matplotlib, "matplotlib.pyplot": pyplot}):
+            run.plot()
+        frames, latencies = drawn[0]
+        np.testing.assert_array_equal(frames, run.table("frames")["frame"])
+        np.testing.assert_allclose(latencies * 1e6, run.table("frames")["latency_ns"])
+        with mock.patch.dict(sys.modules, {"matplotlib": None}):
+            with self.assertRaisesRegex(leviosim.InputError, "apt-get install python3-matplotlib"):
+                run.plot()
 
     def test_tune_finds_the_lowest_clock_that_meets_the_limits(self):
         rows, lowest = leviosim.tune(leviosim.Platform("gap9"), ["370MHz", "50MHz"], fps=20, data=DATA, ate=1)

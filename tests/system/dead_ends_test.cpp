@@ -123,7 +123,7 @@ std::vector<Question> questions() {
       {"an L1 that is too small",
        {"run", "-p", "cluster.l1.size=4KiB", "--data", "flight", "--out", "no"},
        2,
-       {"GAP9", "does not fit in L1", "leviosim platforms feasibility"},
+       {"GAP9", "fit in L1", "is the least", "leviosim platforms feasibility"},
        {"platforms", "feasibility", "--data", "flight", "--frames", "0:4", "--quiet"}},
       {"why natively another error",
        {"run", "--native", "--data", "flight", "--out", "native", "--quiet"},

@@ -137,10 +137,11 @@ TEST_F(Installed, WhatIsNotBuiltIsNamedWithWhatBuildsIt) {
     EXPECT_EQ(sh(std::string("cmake -DCMAKE_INSTALL_PREFIX=into -DCMAKE_INSTALL_COMPONENT=") +
                  component + " -P install.cmake"),
               1);
-    EXPECT_NE(log().find("is not built; what is installed is built by: cmake --build"),
+    EXPECT_NE(log().find("is not built"), std::string::npos) << log();
+    EXPECT_NE(log().find("  cmake --build " + tests::build_folder().string() + " --target " +
+                         targets + '\n'),
               std::string::npos)
         << log();
-    EXPECT_NE(log().find(std::string("--target ") + targets), std::string::npos) << log();
     EXPECT_FALSE(has("into"));
   }
 }

@@ -57,7 +57,7 @@ TEST_P(InAnL1Of, FlightsAreThoseOfALargeOne) {
       large, c.profile);
   EXPECT_GT(large.count(PoseSource::Tracked) + large.count(PoseSource::Epnp) +
                 large.count(PoseSource::EightPoint),
-            20);
+            10);
   EXPECT_TRUE(large.passages.empty());
 }
 

@@ -1,5 +1,7 @@
 #include "workload/vision/guided_matcher.h"
 
+#include <algorithm>
+
 #include "sim/base/check.h"
 #include "sim/work/tiles.h"
 
@@ -194,7 +196,8 @@ Bytes guided_memory(const GuidedOptions& options, int width, int height, int fea
 template <class P>
 void match_guided(work::Machine& machine, const GuidedInput<P>& input,
                   const FeatureList<P>& features, const GuidedOptions& options, MatchList<P>& out) {
-  check(out.capacity >= features.count, "the match list has room for every feature");
+  check(out.capacity >= std::min(features.count, input.landmarks),
+        "the match list has room for every feature or every landmark");
   check(options.max_distance <= 255, "distances of guided matches are kept in a byte");
   work::Arena& local = machine.local();
   const work::Arena::Frame frame(local);

@@ -45,8 +45,8 @@ Bytes guided_memory(const GuidedOptions& options, int width, int height, int fea
                     int landmarks);
 
 /// Fills `out` with features (query) and landmarks (reference), in the order of the features. It
-/// needs room for every feature. The caller opens the stage. Local memory while it runs:
-/// guided_memory(), and tiles of the landmarks if they lie in L2.
+/// needs room for every feature, or for every landmark. The caller opens the stage. Local memory
+/// while it runs: guided_memory(), and tiles of the landmarks if they lie in L2.
 template <class P>
 void match_guided(work::Machine& machine, const GuidedInput<P>& input,
                   const FeatureList<P>& features, const GuidedOptions& options, MatchList<P>& out);

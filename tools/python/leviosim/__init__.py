@@ -187,7 +187,7 @@ class Run(Mapping[str, Any]):
         return f"<leviosim.Run of {len(self.table('frames')['frame'])} frames{time}>"
 
     def plot(self, axes: Any = None) -> Any:
-        """Latencies of all frames in ms, with the deadline; of a native run, its path from above. Needs matplotlib."""
+        """Latencies of all frames in ms; of a native run, its path from above. Needs matplotlib."""
         try:
             from matplotlib import pyplot
         except ImportError:
