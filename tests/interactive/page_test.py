@@ -369,6 +369,20 @@ class InteractivePage(unittest.TestCase):
         page.wait("window.page.setting.frame === 19", 20)
         self.assertEqual(page.complaints, [])
 
+    def test_a_run_without_poses_has_a_page_that_plays(self):
+        folder = self.path("no-poses")
+        shutil.copytree(self.path("levio"), folder)
+        for name in (".leviosim-files", "errors.csv"):
+            os.remove(os.path.join(folder, name))
+        with open(os.path.join(folder, "trajectory.tum"), "w", encoding="utf-8") as file:
+            file.write("# timestamp tx ty tz qx qy qz qw\n")
+        program("report", folder, "--interactive", "-o", self.page("no-poses"))
+        page = self.opened("no-poses", "frame=3")
+        self.assertIsNone(page.run(canvas("Trajectory from above")))
+        page.press("ArrowRight", number=39)
+        page.wait("window.page.setting.frame === 4", 10)
+        self.assertEqual(page.complaints, [])
+
     def test_what_is_no_film_of_the_run_is_refused_in_a_line(self):
         def refused(folder):
             words = program("report", folder, "--interactive", "-o", self.path("none.html"),

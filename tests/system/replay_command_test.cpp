@@ -65,14 +65,13 @@ TEST_F(ReplayCommand, AFilmIsOneFileMoreAndChangesNoOther) {
   EXPECT_EQ(with, without);
 }
 
-TEST_F(ReplayCommand, RefusesAFilmWithoutWorkOrFeatures) {
+TEST_F(ReplayCommand, RefusesAFilmWithoutWork) {
   const auto run = [&](std::vector<std::string> words) {
     words.insert(words.begin(), {"run", "--film", "--out", path("o"), "--data", "x"});
     return program(words);
   };
   expect_refused(run({}), {"--film", "--record"});
   expect_refused(run({"--native"}), {"--film", "--native"});
-  expect_refused(run({"--record", "--profile", "flow"}), {"--film", "'flow'"});
 }
 
 TEST_F(ReplayCommand, TakesThePlatformOfTheRecordingByDefault) {

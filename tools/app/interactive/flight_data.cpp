@@ -62,6 +62,7 @@ Json path_of(const traces::Trajectory& poses) {
 
 /// Stamps become numbers of frames, and seconds since the first.
 void number_frames(Json& path, const Json& stamps) {
+  if (path.is_null()) return;
   std::map<std::int64_t, int> frames;
   for (const Json& stamp : stamps)
     frames.emplace(stamp.get<std::int64_t>(), static_cast<int>(frames.size()));
@@ -83,7 +84,7 @@ traces::Similarity alignment_of(const traces::Trajectory& poses, const Json& pat
   for (const traces::StampedPose& pose : poses)
     positions.emplace(pose.t_ns, pose.T_world_body.translation());
   std::vector<Eigen::Vector3d> from, to;
-  for (std::size_t i = 0; i < path.at("t_ns").size(); ++i) {
+  for (std::size_t i = 0; !path.is_null() && i < path.at("t_ns").size(); ++i) {
     const auto pose = positions.find(path.at("t_ns")[i].get<std::int64_t>());
     if (pose == positions.end()) continue;
     from.push_back(pose->second);
@@ -130,7 +131,7 @@ Json flight_json(const RecordedRun& run) {
   const Json stamps = facts.at("t_ns");
   expect_frames(run, kFramesFile, stamps.size());
   for (Json* table : {&path, &facts}) number_frames(*table, stamps);
-  path.erase(kEstimate[2]);
+  if (!path.is_null()) path.erase(kEstimate[2]);
   return {{"facts", std::move(facts)}, {"path", std::move(path)}, {"words", words_json()}};
 }
 

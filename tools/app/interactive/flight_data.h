@@ -9,7 +9,7 @@
 
 namespace leviosim::tools {
 
-/// {"facts": columns of frames.csv, "path": columns, "words"}
+/// {"facts": columns of frames.csv, "path": columns, or null without poses, "words"}
 /// @throws InputError for tables that lack columns, or are of other frames than the work
 Json flight_json(const RecordedRun& run);
 

@@ -62,6 +62,12 @@ Json mechanisms_json() {
   return mechanisms;
 }
 
+/// A run may have none, whose file is a line of heads.
+traces::Trajectory poses_of(const std::filesystem::path& file) {
+  const std::string text = base::read_file(file, base::InputKind::table);
+  return text.find('\n') + 1 < text.size() ? traces::read_tum(file) : traces::Trajectory();
+}
+
 std::string block(std::string_view id, std::string_view bytes) {
   return fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, base64(bytes));
 }
@@ -87,8 +93,8 @@ std::string interactive_page(const std::string& run, Bytes memory) {
   const traces::WorkTrace trace(file, memory);
   std::vector<FilmFrame> film;
   if (base::exists(folder / kFilmFile)) film = read_film(folder / kFilmFile, memory);
-  return interactive_page({run, trace, read_run_folder(folder, true),
-                           traces::read_tum(folder / kTrajectoryFile), film});
+  return interactive_page(
+      {run, trace, read_run_folder(folder, true), poses_of(folder / kTrajectoryFile), film});
 }
 
 std::string interactive_page(const RecordedRun& run) {

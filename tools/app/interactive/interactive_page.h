@@ -17,7 +17,7 @@ struct RecordedRun {
   std::string name;  ///< of its folder, as commands have it
   const traces::WorkTrace& trace;
   const RunFolder& folder;
-  const traces::Trajectory& poses;
+  const traces::Trajectory& poses;     ///< may be none
   const std::vector<FilmFrame>& film;  ///< empty if there is none
 };
 

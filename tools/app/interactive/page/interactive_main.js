@@ -92,8 +92,11 @@ class InteractivePage {
     this.stages = stageBars(this.bars, this.data.mechanisms);
     this.gantt = frameGantt(this.bars, this.setting);
     const select = (number) => this.select(number);
-    this.views = [flightPath(this.data.flight.path, this.film, this.state, select)];
-    if (this.film) this.views.unshift(filmFigure(this.film, this.state));
+    const {path} = this.data.flight;
+    this.views = [
+      this.film && filmFigure(this.film, this.state),
+      path && flightPath(path, this.film, this.state, select)
+    ].filter(Boolean);
     document.getElementById('content').replaceChildren(
         element(
             'section', {id: 'verdict', 'aria-label': 'Verdict'},
