@@ -106,9 +106,8 @@ double Controller::wait_for_transfers(const work::StageRun& run, double work, St
       wait_until(transfers.done.at(static_cast<std::size_t>(wait->number)), waited, transfers.now);
     const auto* transfer = std::get_if<work::Transfer>(&run.steps[i]);
     if (transfer == nullptr) continue;
-    const double done = moves_external(run.steps[i])
-                            ? pass(run.steps[i], stage, waited, transfers)
-                            : transfers.now;
+    const double done =
+        moves_external(run.steps[i]) ? pass(run.steps[i], stage, waited, transfers) : transfers.now;
     if (transfer->background)
       transfers.done.push_back(done);
     else

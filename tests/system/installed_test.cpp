@@ -125,8 +125,7 @@ TEST_F(Installed, AProjectOfItsOwnHasEveryCommand) {
 
 /// The build's own scripts, as they are in a folder in which nothing was built.
 TEST_F(Installed, WhatIsNotBuiltIsNamedWithWhatBuildsIt) {
-  const std::string script =
-      read_text(tests::build_folder() / "cmake_install.cmake");
+  const std::string script = read_text(tests::build_folder() / "cmake_install.cmake");
   for (const auto& [component, file, targets] :
        {std::array{"program", "/leviosim\"", "leviosim"},
         std::array{"library", "/library/libleviosim.a\"", "leviosim leviosim_library"}}) {

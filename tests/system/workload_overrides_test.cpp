@@ -133,8 +133,8 @@ class SmallMemory : public ::testing::Test {
                        {"run", "--data", (folder_ / "flight").string(), "--platform", "gap9",
                         "--out", (folder_ / "out").string(), "--quiet", "--force", "-p", set});
   }
-  /// Of the key that ends in "=", in KiB: what is said of a memory of 4 KiB, in which nothing works.
-  /// It works, and nothing less does.
+  /// Of the key that ends in "=", in KiB: what is said of a memory of 4 KiB, in which nothing
+  /// works. It works, and nothing less does.
   int least_of(const std::string& key, const std::string& block) {
     const ProgramResult small = run(key + "4KiB");
     expect_refused(small, {block, "is the least in which a native run works"});

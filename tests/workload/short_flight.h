@@ -252,8 +252,8 @@ struct Flown {
   std::vector<PoseSource> sources;
   std::vector<Health> health;
   std::vector<std::array<int, 4>> facts;  ///< features, matches of both kinds, inliers
-  double ate = 0;      ///< SE3-aligned [m]
-  bool finite = true;  ///< all poses
+  double ate = 0;                         ///< SE3-aligned [m]
+  bool finite = true;                     ///< all poses
   int map_restarts = 0;
   std::vector<work::Passage> passages;     ///< what passed through L1 in tiles
   std::vector<work::Passage> l2_passages;  ///< … and through L2

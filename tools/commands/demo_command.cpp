@@ -122,10 +122,9 @@ std::string energy(const RunResult& run) {
 }
 
 std::string error(const RunResult& run) {
-  return run.ate
-             ? fmt::format("{} of {:.1f} m", metres_text(run.ate->translation.rmse, 2),
-                           run.ate->path_length_m)
-             : "–";
+  return run.ate ? fmt::format("{} of {:.1f} m", metres_text(run.ate->translation.rmse, 2),
+                               run.ate->path_length_m)
+                 : "–";
 }
 
 /// What is asked, and its name on the screen.

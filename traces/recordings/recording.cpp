@@ -54,8 +54,8 @@ const RecordingFormat& format_of(const fs::path& folder) {
     looked_for.push_back(fmt::format("{} ({})", format.files, format.name));
   }
   refuse_bags(folder);
-  throw InputError(fmt::format("{}: no recording of a known format; looked for {}",
-                               folder.string(), fmt::join(looked_for, ", ")));
+  throw InputError(fmt::format("{}: no recording of a known format; looked for {}", folder.string(),
+                               fmt::join(looked_for, ", ")));
 }
 
 Dataset open_recording(const fs::path& folder, const OpenOptions& options) {

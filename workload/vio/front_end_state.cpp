@@ -74,9 +74,9 @@ FeatureList<P> shortened(const FrontEndState<P>& state, const FeatureList<P>& fr
   using I32 = typename P::I32;
   FeatureList<P> list = alloc_list(state, capacity);
   list.count = from.count;
+  // uncounted: the host's own check
   check(list.x.data() == from.x.data(), "the shorter list begins where the long one did");
-  for (int i : P::range(0, from.count))
-    list.y[i] = work::narrow<typename P::U16>(I32(from.y[i]));
+  for (int i : P::range(0, from.count)) list.y[i] = work::narrow<typename P::U16>(I32(from.y[i]));
   return list;
 }
 
@@ -98,8 +98,8 @@ ObservedFeatures<P> features_of_frame(const FrontEndState<P>& state,
       all = alloc_list(state, old.capacity);
       extract(all);
     }
-    features.list = shortened(
-        state, all, std::min(old.capacity, all.count + most_found_by_patches(state)));
+    features.list =
+        shortened(state, all, std::min(old.capacity, all.count + most_found_by_patches(state)));
   }
   features.landmarks = local.alloc<typename P::template Span<typename P::U16>>(
       "landmarks of features", features.list.capacity);
@@ -110,8 +110,7 @@ ObservedFeatures<P> features_of_frame(const FrontEndState<P>& state,
 template ObservedFeatures<work::Native> features_of_frame(
     const FrontEndState<work::Native>&, const std::function<void(FeatureList<work::Native>&)>&);
 template ObservedFeatures<work::Counting> features_of_frame(
-    const FrontEndState<work::Counting>&,
-    const std::function<void(FeatureList<work::Counting>&)>&);
+    const FrontEndState<work::Counting>&, const std::function<void(FeatureList<work::Counting>&)>&);
 template struct FrontEndState<work::Native>;
 template struct FrontEndState<work::Counting>;
 

@@ -67,8 +67,7 @@ std::string figure_lines(const RunComparison& c) {
     ++rows;
     const int decimals = q.unit == "m" || q.unit == "mJ" ? 3 : q.unit == "ms" ? 2 : 1;
     table.add({q.name, quantity_text(q.a, q.unit, decimals), quantity_text(q.b, q.unit, decimals),
-               q.unit,
-               q.percent() ? fmt::format("{:+.1f} %", *q.percent()) : kNothing});
+               q.unit, q.percent() ? fmt::format("{:+.1f} %", *q.percent()) : kNothing});
   }
   return terminal_text(table, kScreenColumns);
 }

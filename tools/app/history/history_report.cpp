@@ -286,7 +286,7 @@ Printout history_printout(const std::vector<PastRun>& runs, const Budget* budget
        }},
       {{"p99 ms", kRight, 2}, figure("frame.latency.p99", 1e-6, 2)},
       {{"mJ", kRight, 2}, figure("energy.frame", 1, 3)},
-      {{"ATE m", kRight, 3}, 
+      {{"ATE m", kRight, 3},
        [](R r) { return metres_text(r->record.value("accuracy.ate.rmse"), 3); }},
       {{"limits", kLeft, 1}, [](R r) { return limits_text(r->limits); }},
       {{"subject", kLeft}, [](R r) { return r->origin.subject; }}};

@@ -120,7 +120,8 @@ void add_stage(StatisticList& list, const RunResult& run, const StageResult& sta
   add_blocks(list, path + "memory.", stage.memory.blocks);
   if (stage.transfers.tiles == 0) return;
   list.add(path + "tiles", "1", "tiles that passed through its memory", stage.transfers.tiles);
-  list.add(path + "tile_bytes", "byte", "size of these tiles together", stage.transfers.tile_bytes.count());
+  list.add(path + "tile_bytes", "byte", "size of these tiles together",
+           stage.transfers.tile_bytes.count());
 }
 
 void add_frames(StatisticList& list, const RunResult& run) {

@@ -44,7 +44,8 @@ std::string table_of(const std::vector<RelativeErrors>& errors) {
 
 std::string ate_text(const Evaluation& evaluation) {
   const ErrorSummary& t = evaluation.translation;
-  if (!(t.rmse < kDiverged_m)) return fmt::format("ATE: {}\n     {}\n", kDiverged, evaluation.protocol);
+  if (!(t.rmse < kDiverged_m))
+    return fmt::format("ATE: {}\n     {}\n", kDiverged, evaluation.protocol);
   return fmt::format(
              "ATE: {} RMSE ({} mean, {} median, {} worst)\n"
              "{}     {}\n",

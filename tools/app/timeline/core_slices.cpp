@@ -126,8 +126,7 @@ void CoreSlices::add_transfer(const TransferEvents& transfer) {
   if (transfer.transfers > 1) notes.push_back({"transfers", std::int64_t{transfer.transfers}});
   if (transfer.tiles > 1) notes.push_back({"tiles", std::int64_t{transfer.tiles}});
   const bool is_tile = transfer.tiles > 0 && transfer.tiles == transfer.transfers;
-  const std::string name =
-      fmt::format("{}{}", is_tile ? "tile, " : "", kDirections[direction]);
+  const std::string name = fmt::format("{}{}", is_tile ? "tile, " : "", kDirections[direction]);
   writer_.begin(track, ns(transfer.begin), {name, false, std::move(notes)});
   writer_.end(track, ns(transfer.end));
 }

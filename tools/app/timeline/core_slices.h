@@ -11,7 +11,7 @@ namespace leviosim::tools {
 
 struct ClusterTracks {
   std::array<std::uint64_t, 4> transfers{};  ///< by direction
-  std::vector<std::uint64_t> cores;  ///< by number; the master is the last
+  std::vector<std::uint64_t> cores;          ///< by number; the master is the last
 };
 
 /// From a point in simulated time to ns, rounded down: what lies within something stays within it.

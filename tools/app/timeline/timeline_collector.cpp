@@ -98,8 +98,7 @@ std::vector<StageEvents> TimelineCollector::stages_of(const work::Job& job,
   return stages;
 }
 
-StepEvents TimelineCollector::step_of(const sim::StepTiming& timing,
-                                      std::string_view clock) const {
+StepEvents TimelineCollector::step_of(const sim::StepTiming& timing, std::string_view clock) const {
   const auto cycles = [&](sim::Time begin, sim::Time end) {
     return events_.timebase.clock(clock).whole_cycles(end - begin);
   };

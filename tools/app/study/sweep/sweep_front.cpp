@@ -22,7 +22,8 @@ constexpr std::size_t kEnergy = 1;  ///< among kObjectives
 std::string shown(const SweepOutcome& outcome, std::size_t k) {
   const std::optional<double>& value = outcome.objectives[k];
   if (!value) return "-";
-  if (kObjectives[k].shown_unit == std::string_view("m")) return metres_text(*value, kObjectives[k].decimals);
+  if (kObjectives[k].shown_unit == std::string_view("m"))
+    return metres_text(*value, kObjectives[k].decimals);
   return fmt::format("{:.{}f}", *value * kObjectives[k].scale, kObjectives[k].decimals);
 }
 

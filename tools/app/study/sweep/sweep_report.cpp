@@ -250,8 +250,7 @@ Tally run_points(const Sweep& sweep, const std::vector<std::size_t>& chosen, Swe
         run_point(resolve(sweep.plan, points[open[i]].settings, sweep.inputs,
                           fmt::format("{}: point {}", sweep.plan.file, open[i] + 1)),
                   known);
-    estimate.take(
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    estimate.take(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     return outcome;
   };
   // In the order of the plan, so that the file has the same bytes however many run at a time. Those

@@ -79,12 +79,12 @@ void SweepEstimate::take(double seconds) {
   const std::lock_guard<std::mutex> lock(mutex_);
   least_s_ = taken_ == 0 ? seconds : std::min(least_s_, seconds);
   if (++taken_ != 2 || points_ < kFew || style_ == ProgressLine::Style::None) return;
-  const unsigned cores = threads_ > 0 ? threads_ : std::max(1u, std::thread::hardware_concurrency());
+  const unsigned cores =
+      threads_ > 0 ? threads_ : std::max(1u, std::thread::hardware_concurrency());
   const char* const clear = style_ == ProgressLine::Style::Rewritten ? "\r\x1b[K" : "";
-  const std::string text =
-      fmt::format("{}{} points, {} each: about {} on {} core{}\n", clear, points_,
-                  rough_time(least_s_), rough_time(least_s_ * static_cast<double>(points_) / cores),
-                  cores, cores == 1 ? "" : "s");
+  const std::string text = fmt::format(
+      "{}{} points, {} each: about {} on {} core{}\n", clear, points_, rough_time(least_s_),
+      rough_time(least_s_ * static_cast<double>(points_) / cores), cores, cores == 1 ? "" : "s");
   std::fputs(text.c_str(), stderr);
 }
 

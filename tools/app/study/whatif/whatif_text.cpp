@@ -189,7 +189,8 @@ std::string tiled_text(const std::vector<std::string>& stages) {
   if (stages.empty()) return "nothing passes in tiles";
   const std::size_t named = stages.size() > kMost ? kMost - 1 : stages.size();
   std::string text = fmt::format(
-      "in tiles: {}", fmt::join(stages.begin(), stages.begin() + static_cast<std::ptrdiff_t>(named), ", "));
+      "in tiles: {}",
+      fmt::join(stages.begin(), stages.begin() + static_cast<std::ptrdiff_t>(named), ", "));
   if (named < stages.size()) text += fmt::format(" and {} more", stages.size() - named);
   return text;
 }
