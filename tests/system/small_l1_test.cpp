@@ -146,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(
         L1Case{"next", 32, 16, 160}, L1Case{"next", 48, 4, 160}, L1Case{"next", 64, 8, 160},
         L1Case{"next", 96, 1, 160}, L1Case{"next", 128, 16, 160}, L1Case{"next", 256, 4, 160},
         L1Case{"next", 48, 16, 96}, L1Case{"levio", 32, 4, 320}, L1Case{"levio", 48, 8, 320},
-        L1Case{"next", 32, 4, 320}, L1Case{"next", 48, 8, 320}, L1Case{"levio", 64, 8, 320},
+        L1Case{"next", 56, 4, 320}, L1Case{"next", 48, 8, 320}, L1Case{"levio", 64, 8, 320},
         L1Case{"levio", 64, 16, 320}, L1Case{"levio", 96, 1, 320}, L1Case{"levio", 128, 4, 320},
         L1Case{"levio", 256, 16, 320}, L1Case{"next", 64, 8, 320}, L1Case{"next", 64, 16, 320},
         L1Case{"next", 96, 4, 320}, L1Case{"next", 128, 1, 320}, L1Case{"next", 256, 16, 320}));

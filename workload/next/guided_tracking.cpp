@@ -128,8 +128,8 @@ std::optional<Pose<P>> search_landmarks(const FrontEndState<P>& state, const Fra
   found.points_in_l2 = !landmarks_fit(state, features.count, landmarks);
   found.points = found.points_in_l2 ? state.graph.points.subspan(0, 3 * landmarks)
                                     : local.alloc<Floats>("landmark points", 3 * landmarks);
-  found.matches = alloc_matches<P>(
-      local, list_capacity(state, std::min(features.count, landmarks)), "world matches");
+  found.matches = alloc_matches<P>(local, list_capacity(state, std::min(features.count, landmarks)),
+                                   "world matches");
   const Pose<P> T_camera_world = inverse(T_predicted);
   match_around(state, features, T_camera_world, search.radius_px, found);
   const int matches = found.matches.count;
@@ -366,8 +366,7 @@ void align_features(const FrontEndState<P>& state, Frame<P>& frame,
   if (!T_predicted || !(options.reach > 0)) return;
   const auto matched = local.alloc<Flags<P>>("matched", n);
   mark_matched<P>(matches.list, state.keyframe.features.list.count, matched);
-  Predictions<P> predictions(local,
-                             state.residence.whole_lists ? n : most_found_by_patches(state));
+  Predictions<P> predictions(local, state.residence.whole_lists ? n : most_found_by_patches(state));
   predict_landmarks<P>(state, frame, inverse(*T_predicted), matched, predictions);
   align_patches<P>(machine, before, {image, predictions.x, predictions.y, !one}, steps,
                    options.reach, options, predictions.pairs, aligned);

@@ -74,6 +74,7 @@ FeatureList<P> shortened(const FrontEndState<P>& state, const FeatureList<P>& fr
   using I32 = typename P::I32;
   FeatureList<P> list = alloc_list(state, capacity);
   list.count = from.count;
+  // uncounted: the host's own check
   check(list.x.data() == from.x.data(), "the shorter list begins where the long one did");
   for (int i : P::range(0, from.count)) list.y[i] = work::narrow<typename P::U16>(I32(from.y[i]));
   return list;
