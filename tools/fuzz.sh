@@ -8,9 +8,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-all=(asl_tables budget evaluation flight_plan history image json output_record overrides platform_yaml
+all=(asl_tables budget evaluation film flight_plan history image json output_record overrides platform_yaml
   record rendered_table sensor_yaml sweep_points sweep_plan work_trace work_trace_content)
-light=(asl_tables evaluation image json output_record overrides platform_yaml rendered_table sensor_yaml
+light=(asl_tables evaluation film image json output_record overrides platform_yaml rendered_table sensor_yaml
   work_trace work_trace_content)
 seconds=60
 targets=()

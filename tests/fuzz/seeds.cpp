@@ -1,6 +1,7 @@
 // Writes the seeds of fuzz targets that need more than text: work traces, images, trajectories,
 // points of sweeps.
 //   seeds FOLDER   makes FOLDER/TARGET/* for the targets work_trace, work_trace_content, image,
+//   film,
 //                  evaluation, asl_tables, history and sweep_points
 #include <fmt/core.h>
 
@@ -72,6 +73,12 @@ void write_images(const fs::path& folder) {
   write(folder / "image/grey.pgm", "P5 2 2 255\n1234");
   write(folder / "image/grey.jpg", tests::jpeg_of(grey));
   write(folder / "image/progressive.jpg", tests::jpeg_of(grey, 90, true));
+  traces::ByteWriter frame;  // of a film: image, features of five kinds, a map point
+  frame.text(tests::jpeg_of(grey));
+  for (const char* features : {"ab", "abcd", "", "abcdefgh", "abcd"}) frame.text(features);
+  frame.whole(1);
+  for (const int millimetres : {1200, -40, 3}) frame.integer(millimetres);
+  write(folder / "film/frame", frame.bytes());
   const std::string png = tests::png_of(grey);
   for (const char* kind : {"zTXt", "iTXt", "iCCP", "eXIf", "abCd"})
     write(folder / "image" / (std::string(kind) + ".png"),
