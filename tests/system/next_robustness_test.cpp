@@ -219,6 +219,20 @@ TEST(NextRobustnessOf, RestsOnWhileItsRotorsIdle) {
   }
 }
 
+/// Images that stand still while the IMU leads away show what moves with the camera.
+TEST(NextRobustnessOf, DoesNotRestOnWhereItsImuLeadsAway) {
+  ShortFlight flight = draw_flight(PacedFlight(3, at_pace(0)), 4);
+  for (std::size_t i = 40; i < 60; ++i)
+    for (ImuInput& sample : flight.frames[i].imu) sample.accel[0] += 2;
+  const Flown flown = fly(flight, profile_named("next", 1));
+  ASSERT_TRUE(flown.finite);
+  EXPECT_EQ(flown.sources[39], PoseSource::First);
+  EXPECT_GE(
+      std::count(flown.sources.begin() + 40, flown.sources.begin() + 60, PoseSource::Predicted),
+      10);
+  EXPECT_EQ(flown.health[59], Health::unreliable);
+}
+
 /// A gyro's bias below 0 there cannot be, so every map after the first frame's is refused.
 TEST(NextRobustnessOf, SaysWhenItsMapStartsAnew) {
   const ShortFlight flight = draw_flight(PacedFlight(3, at_pace(1, 4)), 1);

@@ -284,9 +284,9 @@ void NextFrontEnd<P>::locate(TrackedFrame<P>& frame, FrameReport& report) {
 }
 
 /// A vehicle that rested at the only keyframe, and has not moved in any image since, still rests
-/// there, whatever the IMU says, which feels idling rotors. Else by the IMU, which measures the
-/// length of the translation, where the 8-point algorithm guesses it. With a single keyframe any
-/// length is a guess, which waits for a parallax that is worth one.
+/// there, though the IMU feels idling rotors: they lead nowhere. Else by the IMU, which measures
+/// the length of the translation, where the 8-point algorithm guesses it. With a single keyframe
+/// any length is a guess, which waits for a parallax that is worth one.
 template <class P>
 std::optional<Pose<P>> NextFrontEnd<P>::pose_by_prediction(const TrackedFrame<P>& frame,
                                                            FrameReport& report) {
@@ -294,7 +294,7 @@ std::optional<Pose<P>> NextFrontEnd<P>::pose_by_prediction(const TrackedFrame<P>
   if (one_keyframe) {
     const auto stage = state_.machine.stage(stages::kGuided);
     const std::optional<Pose<P>> still = still_pose(frame);
-    const bool rests = rested_ && rests_;
+    const bool rests = rested_ && rests_ && within_noise(inertial_.predicted_pose(), *still);
     report.at_rest = rests ? 1 : 0;
     report.source = rests ? PoseSource::First : PoseSource::Predicted;
     if (still && (rests || by_imu)) return still;
@@ -341,22 +341,27 @@ bool NextFrontEnd<P>::images_rest() const {
          inertial_.recent_may_be_rest();
 }
 
+/// Whether a vehicle at rest may seem to have moved so far. Works inside a stage.
+template <class P>
+bool NextFrontEnd<P>::within_noise(const Pose<P>& now, const Pose<P>& last) const {
+  using F = typename P::F32;
+  const RestOptions& limits = state_.profile.rest;
+  const Vec3<P> moved = now.t - last.t;
+  const auto& turn = (transpose(last.R) * now.R).m;
+  // The trace is 1 + 2 cos(angle).
+  return dot(moved, moved) < F(limits.position * limits.position) &&
+         F(3.0f) - (turn[0][0] + turn[1][1] + turn[2][2]) < F(limits.rotation * limits.rotation);
+}
+
 /// The frame's pose with an orthonormal rotation; at rest, the pose of the frame before. The IMU
 /// cannot tell rest from uniform motion: once the images contradict rest, rest is ignored until the
 /// IMU has measured motion.
 template <class P>
 Pose<P> NextFrontEnd<P>::held_at_rest(const Pose<P>& T_world_camera) {
-  using F = typename P::F32;
-  const RestOptions& limits = state_.profile.rest;
   const auto stage = state_.machine.stage(stages::kGuided);
   const Pose<P> now{orthonormalised<P>(T_world_camera.R), T_world_camera.t};
   const Pose<P> last = prediction_.last_reported();
-  const Vec3<P> moved = now.t - last.t;
-  const auto& turn = (transpose(last.R) * now.R).m;
-  // The trace is 1 + 2 cos(angle).
-  const bool near =
-      dot(moved, moved) < F(limits.position * limits.position) &&
-      F(3.0f) - (turn[0][0] + turn[1][1] + turn[2][2]) < F(limits.rotation * limits.rotation);
+  const bool near = within_noise(now, last);
   if (inertial_.rest() && !near) inertial_.reject_rest();
   return inertial_.rest() ? last : now;
 }

@@ -55,6 +55,7 @@ class NextFrontEnd : public FrontEnd<P> {
   void locate(TrackedFrame<P>& frame, FrameReport& report);
   std::optional<Pose<P>> pose_by_prediction(const TrackedFrame<P>& frame, FrameReport& report);
   std::optional<Pose<P>> still_pose(const Frame<P>& frame);
+  bool within_noise(const Pose<P>& now, const Pose<P>& last) const;
   Pose<P> held_at_rest(const Pose<P>& T_world_camera);
   bool is_keyframe(const Frame<P>& frame, const FrameReport& report);
 
