@@ -202,6 +202,8 @@ TEST_F(MapHealthOf, APathThatGrowsFasterAndFasterIsNotCorrected) {
 TEST_F(MapHealthOf, APathThatLosesItsOldestPoseIsAsLong) {
   window({.scale_sigma = 0.03f});
   for (int i = 0; i < 60; ++i) EXPECT_EQ(correcting(i < 30 ? 20 : 3), Health::good);
+  EXPECT_NEAR(health_.path(), 7.9f, 0.01f);  // 20 poses before the first of 60 frames
+  EXPECT_NEAR(health_.path_deviation(), 0.03f * 7.9f, 0.01f);
 }
 
 /// What the IMU alone found was wrong by as much.

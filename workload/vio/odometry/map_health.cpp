@@ -94,6 +94,10 @@ void MapHealth::follow_corrections(const std::vector<EarlierPose>& earlier, floa
   const float before = length_of(std::span(last).first(both));
   const float change = length_of(std::span(earlier).subspan(1, both)) - before;
   if (before > 0) corrections_ += change / before;
+  if (both == 0 || both == last.size()) return;
+  const float left = length_of(std::span(last).subspan(both - 1));  // nothing corrects it any more
+  path_m_ += left;
+  drift_m_ += scale_sigma() * left;
 }
 
 /// Adds what the path has grown by, and how far its end may be off.
