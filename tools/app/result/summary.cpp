@@ -291,7 +291,7 @@ bool has_poses(const RunResult& run) {
   const auto is_origin = [](const traces::StampedPose& pose) {
     return pose.T_world_body.matrix() == Eigen::Matrix4d::Identity();
   };
-  return run.trajectory.empty() ||
+  return run.trajectory.empty() || run.ate ||
          !std::all_of(run.trajectory.begin(), run.trajectory.end(), is_origin);
 }
 

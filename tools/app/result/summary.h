@@ -99,7 +99,8 @@ std::string readable(double value, int decimals);
 
 /// Length of the estimated path [m].
 double path_length(const std::vector<traces::StampedPose>& trajectory);
-/// Whether the workload says where the body is: one that does not leaves it at the origin.
+/// Whether the workload says where the body is: one that does not leaves it at the origin, and is
+/// not compared with a truth.
 bool has_poses(const RunResult& run);
 
 }  // namespace leviosim::tools
