@@ -283,8 +283,8 @@ TEST(ClosedLoop, FilesSayOfEveryFrameWhatBecameOfIt) {
   for (const char* part :
        {"single_cycles,cycles_feature_extraction,cycles_epnp_ransac,found_in_"
         "buffers,dropped,missed\n",
-        "\n1,1050000000,,,,,,,,,,,,,,,,50000000,,,,,,,,1,1,1\n",
-        "\n0,1000000000,first,1,100,40,60,30,200,0,0,0,0,0,0,0,located,0,0,10000000,10000000,"
+        "\n1,1050000000,,,,,,,,,,,,,,,,,,50000000,,,,,,,,1,1,1\n",
+        "\n0,1000000000,first,1,100,40,60,30,200,0,0,0,0,0,0,0,0,0,located,0,0,10000000,10000000,"
         "1000000,5000000,0,0,0,0,0\n",
         ",30000000,0,0,0,0,1\n"})
     EXPECT_NE(csv.find(part), std::string::npos) << part << " is not in:\n" << csv;

@@ -77,9 +77,10 @@ TEST(Examples, OfEveryHelpWorkAsTheyStand) {
           "':$PATH XDG_CACHE_HOME='" + (folder / "cache").string() +
           "' && export PATH XDG_CACHE_HOME && " + "unset LINES COLUMNS && { " + example +
           "\n} >../screen.txt 2>../errors.txt || [ $? = 1 ]";  // a limit not met
-      EXPECT_EQ(std::system(line.c_str()), 0)  // NOLINT: the command is leviosim's own
-          << example << '\n'
-          << base::read_text_file(folder / "errors.txt");
+      const int status = std::system(line.c_str());  // NOLINT: the command is leviosim's own
+      const std::string errors = base::read_text_file(folder / "errors.txt");
+      if (errors.find("built without the engine") != std::string::npos) continue;
+      EXPECT_EQ(status, 0) << example << '\n' << errors;
       const std::string screen = base::read_text_file(folder / "screen.txt");
       if (is_for_people(example)) {
         EXPECT_EQ(screen_fault(screen), "") << example << '\n' << screen;
