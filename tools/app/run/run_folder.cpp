@@ -121,7 +121,7 @@ std::map<std::string, outputs::Content> files_of(const RunFolder& run) {
   files.emplace(kRecordFile, [&](const Sink& sink) { sink(record_text(run.record)); });
   files.emplace(kManifestFile, [&](const Sink& sink) { sink(json_text(run.manifest, 2) + '\n'); });
   for (const auto& [name, table] : run.tables)
-    files.emplace(name, [&table](const Sink& sink) { write_csv(table, sink); });
+    files.emplace(name, [&table = table](const Sink& sink) { write_csv(table, sink); });
   if (run.run)
     files.emplace(kTrajectoryFile,
                   [&](const Sink& sink) { traces::write_tum(run.run->trajectory, sink); });

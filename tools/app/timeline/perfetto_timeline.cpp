@@ -230,7 +230,7 @@ void PerfettoTimeline::Writer::add_iteration(const IterationEvents& iteration,
   if (!open_) {
     writer_.begin(controller_, ns(iteration.begin),
                   {"optimisation", false, {{"frame", std::int64_t{iteration.frame}}}, {flow}});
-    open_.emplace();
+    open_ = Open{};
   }
   for (std::size_t i = 0; i < iteration.stages.size(); ++i) {
     const StageEvents& stage = iteration.stages[i];
