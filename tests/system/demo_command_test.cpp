@@ -34,7 +34,7 @@ TEST(DemoCommand, ShowsBothProfilesOnAScreenAndLeavesThemWithAReport) {
   for (const char* file : {"demo/levio.html", "demo/next.html", "demo/next/flight.film"})
     EXPECT_EQ(fs::exists(folder.path() / file), computes) << file;
   if (computes) {
-    EXPECT_NE(shown.out.find(path("demo/levio.html") + " and next.html"), std::string::npos);
+    EXPECT_NE(shown.out.find("played: levio.html and next.html"), std::string::npos);
     const std::string page = base::read_text_file(path("demo/levio.html"));
     ASSERT_EQ(testing::run_program(folder.path(), {"report", path("demo/levio"), "--interactive",
                                                    "-o", path("again.html")})

@@ -220,8 +220,8 @@ std::string screen(const Flown& levio, const Flown& next, const std::string& wha
   const std::string folder = printable(std::filesystem::absolute(out).lexically_normal().string());
   text += fmt::format("Both runs as a page: file://{}/{}\n", folder, kReport);
   text += has_engine()
-              ? fmt::format("With sliders, and played: file://{}/{} and {}\n", folder,
-                            page_name(levio), page_name(next))
+              ? fmt::format("Beside it, with sliders, and played: {} and {}\n", page_name(levio),
+                            page_name(next))
               : "With sliders: tools/setup.sh pages; LEVIOSIM_WASM=ON tools/build.sh release\n";
   return text + fmt::format(
                     "next: leviosim whatif {0}/levio\n"
