@@ -88,6 +88,20 @@ TEST_F(ReplayCommand, TakesThePlatformOfTheRecordingByDefault) {
             base::read_text_file(folder_ / "slower/stages.csv"));
 }
 
+TEST_F(ReplayCommand, AnotherInstructionSetIsThatOfTheRecordingsChip) {
+  record();
+  const auto stages_of = [&](std::vector<std::string> words) {
+    const std::string out = path("out");
+    words.insert(words.begin(), {"replay", path("run"), "--out", out, "--force", "--quiet"});
+    const ProgramResult result = program(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return base::read_text_file(folder_ / "out/stages.csv");
+  };
+  const std::string plain = stages_of({"-p", "isa.base=rv32imfc"});
+  EXPECT_EQ(plain, stages_of({"--platform", "gap9", "-p", "isa.base=rv32imfc"}));
+  EXPECT_NE(plain, stages_of({}));
+}
+
 TEST_F(ReplayCommand, TraceShowsAndChecks) {
   record();
   const ProgramResult info = program({"trace", "info", path("run/work.trace")});

@@ -2,14 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
+#include "platform_models/loader/override.h"
 #include "sim/base/error.h"
 #include "sim/chip/accelerator.h"
 #include "tools/app/run/simulate.h"
 #include "tools/app/run/trace_source.h"
 
 namespace leviosim::tools {
+namespace {
+
+bool has_values_of(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform& b) {
+  return std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(),
+                    b.parameters.end(),
+                    [](const platform::Parameter& x, const platform::Parameter& y) {
+                      return x.path == y.path && x.value == y.value && x.unit == y.unit;
+                    });
+}
+
+platform::ResolvedPlatform platform_in(const traces::WorkTrace& trace,
+                                       const std::vector<std::string>& overrides) {
+  return platform::resolve_platform_text(trace.name() + ", platform of the recording",
+                                         trace.info().platform_yaml, overrides);
+}
+
+}  // namespace
 
 void check_cores(const traces::WorkTrace& trace, const RunRequest& request) {
   const int recorded = trace.info().cores;
@@ -29,10 +48,20 @@ void check_cores(const traces::WorkTrace& trace, const RunRequest& request) {
         trace.name(), recorded, request.cores, recorded, request.cores));
 }
 
+std::string shipped_chip(const traces::WorkTrace& trace) {
+  const std::string& name = trace.info().platform;
+  const std::vector<std::string> known = platform::platform_names();
+  const bool is_shipped = std::find(known.begin(), known.end(), name) != known.end() &&
+                          has_values_of(platform_in(trace, {}), platform::resolve_platform(name));
+  return is_shipped ? name : std::string();
+}
+
 platform::ResolvedPlatform recorded_platform(const traces::WorkTrace& trace,
                                              const std::vector<std::string>& overrides) {
-  return platform::resolve_platform_text(trace.name() + ", platform of the recording",
-                                         trace.info().platform_yaml, overrides);
+  if (platform::split_overrides(overrides).base)
+    if (const std::string chip = shipped_chip(trace); !chip.empty())
+      return platform::resolve_platform(chip, overrides);
+  return platform_in(trace, overrides);
 }
 
 Replay replay(const traces::WorkTrace& trace, const RunRequest& request,

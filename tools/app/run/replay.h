@@ -16,7 +16,12 @@ struct Replay {
   Bytes recorded_l1;  ///< size of L1 on the chip of the recording
 };
 
-/// The platform that the trace was recorded on, with what was overridden then.
+/// The shipped chip with the values of the recording's platform, which names the instruction set
+/// that it builds on; empty if there is none.
+std::string shipped_chip(const traces::WorkTrace& trace);
+
+/// The platform that the trace was recorded on, with what was overridden then. Where an override
+/// names another instruction set, that of shipped_chip() if there is one.
 platform::ResolvedPlatform recorded_platform(const traces::WorkTrace& trace,
                                              const std::vector<std::string>& overrides = {});
 

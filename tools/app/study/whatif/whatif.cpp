@@ -167,14 +167,6 @@ void raise(Variant& variant, const char* key, const std::string& value) {
       fmt::format("{}={}", std::string_view(key).substr(kChipSettings.size()), value));
 }
 
-bool has_values_of(const platform::ResolvedPlatform& a, const platform::ResolvedPlatform& b) {
-  return std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(),
-                    b.parameters.end(),
-                    [](const platform::Parameter& x, const platform::Parameter& y) {
-                      return x.path == y.path && x.value == y.value && x.unit == y.unit;
-                    });
-}
-
 }  // namespace
 
 std::string VariantResult::verdict() const {
@@ -267,14 +259,9 @@ std::vector<Variant> WhatIf::variants(const std::string& change) {
 }
 
 void WhatIf::name_chip(Variant& variant) {
-  const SweepInputs::Trace& trace = inputs_.trace(trace_, {trace_});
-  const std::string& name = trace.work->info().platform;
-  const std::vector<std::string> known = platform::platform_names();
-  if (variant.settings.count(kBase) == 0 || variant.settings.count("platform") > 0 ||
-      std::find(known.begin(), known.end(), name) == known.end() ||
-      !has_values_of(plan_.reference->resolve({}), inputs_.platform(name, {trace_}).resolve({})))
-    return;
-  variant.settings["platform"] = name;
+  if (variant.settings.count(kBase) == 0 || variant.settings.count("platform") > 0) return;
+  const std::string chip = shipped_chip(*inputs_.trace(trace_, {trace_}).work);
+  if (!chip.empty()) variant.settings["platform"] = chip;
 }
 
 void WhatIf::raise_event_unit(Variant& variant) {
