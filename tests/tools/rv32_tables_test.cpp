@@ -57,10 +57,6 @@ const std::set<std::string> kLibrary = {"f64_add",    "f64_sub",     "f64_mul",
                                         "f64_div",    "f64_compare", "f64_widen",
                                         "f64_narrow", "popcount",    "memset"};
 
-/// Those that the oldest table, armv6, does not have. Runs take them for code that was not measured,
-/// and say so.
-const std::set<std::string> kNotMeasured = {"aim_landmarks", "align_from_all", "drop_disagreeing"};
-
 TEST_P(CompiledTables, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
   std::set<std::string> measured;
   for (const Segment& segment : segments(GetParam()))
@@ -68,8 +64,8 @@ TEST_P(CompiledTables, HasAnEntryForEveryNamedFunctionOfTheWorkload) {
   const std::set<std::string> names = leviosim::tests::named_functions();
   EXPECT_GT(names.size(), 50u);
   for (const std::string& name : names)
-    EXPECT_NE(measured.contains(name), GetParam() == "armv6" && kNotMeasured.contains(name))
-        << name << " has no footprint, or has one now: run tools/rv32/measure.sh";
+    EXPECT_TRUE(measured.contains(name))
+        << name << " has no footprint: run tools/rv32/measure.sh";
 }
 
 /// A chip that executes the code of each table, and what is set on it.
@@ -141,8 +137,7 @@ TEST_P(CompiledTables, IsSortedWithoutRepetitionAndPlausible) {
   }
 }
 
-/// Executed instructions of units of work beside those of the release. A pixel of FAST takes a fifth
-/// more since images pass through L1 in strips (sim/PARTS.md).
+/// Executed instructions of units of work beside those of the release.
 /// @param section  the title above the table
 void expect_units_within_a_tenth(const std::string& page, const std::string& section, int count) {
   const std::string text = base::read_text_file(kSource / "tools/rv32" / page);
@@ -152,7 +147,7 @@ void expect_units_within_a_tenth(const std::string& page, const std::string& sec
   static const std::regex row(R"(\n\| ([^|]+) \| ([0-9,]+) \| ([0-9,.]+) \| ([0-9.]+) \|)");
   int units = 0;
   for (std::sregex_iterator it(table.begin(), table.end(), row), end; it != end; ++it, ++units)
-    EXPECT_NEAR(std::stod((*it)[4]), 1, (*it)[1] == "FAST, pixel" ? 0.2 : 0.1) << (*it)[1];
+    EXPECT_NEAR(std::stod((*it)[4]), 1, 0.1) << (*it)[1];
   EXPECT_EQ(units, count) << page;
 }
 
