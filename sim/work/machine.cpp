@@ -7,10 +7,15 @@ namespace leviosim::work {
 Machine::Machine(const MachineConfig& config)
     : config_(config),
       local_(config.memory, config.capacity, config.alignment),
-      external_("external memory", config.external) {
+      behind_("external memory", config.external) {
   check(config.cores >= 1, "a machine has at least one core");
   if (config.record && config.code != nullptr)
     tracker_.emplace(*config.code, code_of(config.cores) + 1);
+}
+
+void Machine::set_behind(Arena behind, Bytes kept) {
+  behind_ = std::move(behind);
+  kept_ = kept;
 }
 
 void Machine::follow_code_of(int core) {
@@ -30,7 +35,7 @@ void Machine::begin_stage(std::string_view name) {
   in_stage_ = true;
   stage_ = name;
   local_.set_user(name);
-  external_.set_user(name);
+  behind_.set_user(name);
   local_.reset_peak();
   fork_peak_ = {};
   if (!recording()) return;

@@ -68,9 +68,16 @@ class Machine {
   bool recording() const { return config_.record; }
   Arena& local() { return local_; }
   const Arena& local() const { return local_; }
-  /// What has no room in L2, if that is the local memory. Its capacity is 0 on a chip without.
-  Arena& external() { return external_; }
-  const Arena& external() const { return external_; }
+  /// For what has no room in local memory: external memory, if that is L2, or what a workload has
+  /// set aside of L2, if that is L1. Its capacity is 0 where there is none.
+  Arena& behind() { return behind_; }
+  const Arena& behind() const { return behind_; }
+  /// Takes `behind` as behind(), for blocks that do not leave `kept` bytes of local memory free.
+  void set_behind(Arena behind, Bytes kept);
+  /// Whether a block is to lie in local memory: if it leaves enough free, or nothing lies behind.
+  bool has_room(Bytes block) const {
+    return behind_.capacity() == Bytes(0) || block + kept_ <= local_.free();
+  }
 
   /// While alive, work belongs to the stage of this name (a string literal). Stages do not nest.
   class Stage {
@@ -217,7 +224,8 @@ class Machine {
 
   MachineConfig config_;
   Arena local_;
-  Arena external_;
+  Arena behind_;
+  Bytes kept_{0};  ///< of local memory, by blocks that may lie behind it
   Job job_;
   bool in_stage_ = false;
   std::int32_t background_transfers_ = 0;  ///< of the job so far

@@ -21,7 +21,8 @@ namespace leviosim::work {
 /// Where the memory of a view lies, seen from the core that works on it. Local is the core's own
 /// memory: L1 for cluster cores, L2 for the fabric controller.
 /// Shared is one word of local memory that all cores of the team use at the same time.
-enum class Space : std::uint8_t { Local, L2, Shared };
+/// Either is local memory or L2, as there was room: known where the memory was allocated.
+enum class Space : std::uint8_t { Local, L2, Shared, Either };
 
 /// Storage of a byte under the counting policy. A type of its own, because a store through
 /// `unsigned char*` may touch any object, so that the compiler would have to keep the counters in
@@ -60,21 +61,46 @@ T narrow(std::int32_t x) {
   return static_cast<T>(x);
 }
 
+/// What a load and a store count as.
+template <Op Load, Op Store>
+struct Access {
+  std::uint64_t weight;
+
+  void load() const { count(Load, weight); }
+  void store() const { count(Store, weight); }
+};
+
+/// The same, of memory of which each view knows whether it is local. No branch, so that the
+/// optimiser folds the counters of a loop.
+template <Op Load, Op Store>
+struct AccessOfEither {
+  std::uint64_t local, l2;  ///< one of them is zero
+
+  void load() const {
+    count(Load, local);
+    count(Op::LoadL2, l2);
+  }
+  void store() const {
+    count(Store, local);
+    count(Op::StoreL2, l2);
+  }
+};
+
 /// A memory cell as the left or right side of an expression: reading it counts a load, assigning a
-/// store. `Load` and `Store` say which kind.
-template <class T, Op Load, Op Store>
+/// store. `Accesses` says of which kind.
+template <class T, class Accesses>
 class Cell {
  public:
   using Value = typename LoadedAs<std::remove_const_t<T>>::Type;
 
-  Cell(T* where, std::uint64_t weight) : where_(where), weight_(weight) {}
+  Cell(T* where, Accesses access) : where_(where), access_(access) {}
 
   operator Value() const {
-    count(Load, weight_);
+    access_.load();
     return LoadedAs<std::remove_const_t<T>>::from(*where_);
   }
   const Cell& operator=(T stored) const requires(!std::is_const_v<T>) {
-    count(Store, weight_);
+    access_.store();
     *where_ = stored;
     return *this;
   }
@@ -93,7 +119,7 @@ class Cell {
 
  private:
   T* where_;
-  std::uint64_t weight_;
+  Accesses access_;
 };
 
 /// View of `size` consecutive elements under the counting policy. `straddles` is 1 if the elements
@@ -101,13 +127,18 @@ class Cell {
 /// byte lies in one word wherever it is.
 template <class T, Space S = Space::Local>
 class CountedSpan {
+  static constexpr bool kEither = S == Space::Either;
   static constexpr Op in(Op local, Op l2, Op shared) {
-    return S == Space::Local ? local : S == Space::L2 ? l2 : shared;
+    return S == Space::L2 ? l2 : S == Space::Shared ? shared : local;
   }
-  using Stream = Cell<T, in(Op::LoadStream, Op::LoadL2, Op::LoadShared),
-                      in(Op::StoreStream, Op::StoreL2, Op::StoreShared)>;
-  using Indexed = Cell<T, in(Op::LoadIndexed, Op::LoadL2, Op::LoadShared),
-                       in(Op::StoreIndexed, Op::StoreL2, Op::StoreShared)>;
+  template <Op Load, Op Store>
+  using AccessFor = std::conditional_t<kEither, AccessOfEither<Load, Store>, Access<Load, Store>>;
+  using Streaming = AccessFor<in(Op::LoadStream, Op::LoadL2, Op::LoadShared),
+                              in(Op::StoreStream, Op::StoreL2, Op::StoreShared)>;
+  using Indexing = AccessFor<in(Op::LoadIndexed, Op::LoadL2, Op::LoadShared),
+                             in(Op::StoreIndexed, Op::StoreL2, Op::StoreShared)>;
+  using Stream = Cell<T, Streaming>;
+  using Indexed = Cell<T, Indexing>;
 
  public:
   CountedSpan() = default;
@@ -115,24 +146,59 @@ class CountedSpan {
       : data_(data), size_(size), straddles_(sizeof(T) > 1 && straddles) {}
   /// A read-only view of the same memory.
   operator CountedSpan<const T, S>() const requires(!std::is_const_v<T>) {
+    CountedSpan<const T, S> view(data_, size_, straddles_);
+    view.in_l2_ = in_l2_;
+    return view;
+  }
+  /// A view of local memory where there may be one of either.
+  operator CountedSpan<T, Space::Either>() const requires(S == Space::Local) {
     return {data_, size_, straddles_};
+  }
+  operator CountedSpan<const T, Space::Either>() const
+      requires(S == Space::Local && !std::is_const_v<T>) {
+    return {data_, size_, straddles_};
+  }
+  /// The same memory, which lies in L2.
+  CountedSpan in_l2() const requires kEither {
+    CountedSpan view = *this;
+    view.in_l2_ = true;
+    return view;
   }
 
   int size() const { return size_; }
   T* data() const { return data_; }
-  Stream operator[](int i) const { return {data_ + i, access_weight(straddles_)}; }
-  Indexed operator[](I32 i) const { return {data_ + i.v, access_weight(straddles_)}; }
+  Stream operator[](int i) const { return {data_ + i, access<Streaming>()}; }
+  Indexed operator[](I32 i) const { return {data_ + i.v, access<Indexing>()}; }
   Stream operator[](PlainInt i) const = delete;
-  CountedSpan subspan(int offset, int size) const { return {data_ + offset, size, straddles_}; }
-  CountedSpan subspan(I32 offset, int size) const { return {data_ + offset.v, size, straddles_}; }
+  CountedSpan subspan(int offset, int size) const { return part(data_ + offset, size); }
+  CountedSpan subspan(I32 offset, int size) const { return part(data_ + offset.v, size); }
   CountedSpan subspan(PlainInt offset, int size) const = delete;
 
  private:
+  template <class, Space>
+  friend class CountedSpan;
+
+  CountedSpan part(T* data, int size) const {
+    CountedSpan view = *this;
+    view.data_ = data;
+    view.size_ = size;
+    return view;
+  }
+  template <class Accesses>
+  Accesses access() const {
+    const std::uint64_t weight = access_weight(straddles_);
+    if constexpr (kEither)
+      return {in_l2_ ? 0 : weight, in_l2_ ? weight : 0};
+    else
+      return {weight};
+  }
+
   T* data_ = nullptr;
   int size_ = 0;
   /// Not the weight itself: that has the type of counters, so that counting might change it, for
   /// all that the compiler knows.
   bool straddles_ = false;
+  bool in_l2_ = false;  ///< of Space::Either
 };
 
 /// A view of memory under the native policy.
@@ -147,6 +213,7 @@ class NativeSpan {
   T* data() const { return data_; }
   T& operator[](int i) const { return data_[i]; }
   NativeSpan subspan(int offset, int size) const { return {data_ + offset, size}; }
+  NativeSpan in_l2() const { return *this; }
 
  private:
   T* data_ = nullptr;

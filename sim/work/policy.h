@@ -63,6 +63,8 @@ struct Native {
   using L2Span = NativeSpan<T>;
   template <class T>
   using SharedSpan = NativeSpan<T>;
+  template <class T>
+  using EitherSpan = NativeSpan<T>;
   template <class T, int N>
   using Array = NativeArray<T, N>;
   using Function = FunctionScope<false>;
@@ -90,6 +92,9 @@ struct Counting {
   using L2Span = CountedSpan<T, Space::L2>;
   template <class T>
   using SharedSpan = CountedSpan<T, Space::Shared>;
+  /// Of what lies in L2 where local memory has no room for it.
+  template <class T>
+  using EitherSpan = CountedSpan<T, Space::Either>;
   template <class T, int N>
   using Array = CountedArray<T, N>;
   using Function = FunctionScope<true>;

@@ -50,6 +50,31 @@ TEST(MemoryViews, AreStreamsFromAComputedPlaceOn) {
   EXPECT_EQ(counts[Op::LoadIndexed], 0u);
 }
 
+// A list that may lie in either memory costs what it costs where it is.
+TEST(MemoryViews, OfEitherMemoryCountWhereTheyLie) {
+  F32 cells[4] = {0.0f, 1.0f, 2.0f, 3.0f};
+  const Counting::EitherSpan<F32> local = View(cells, 4), far = local.in_l2();
+  const auto use = [](const Counting::EitherSpan<F32>& view) {
+    take_tally();
+    view[0] = F32(view[1]) + F32(view[I32(3)]);
+    view[I32(2)] = 1.0f;
+    const Counting::EitherSpan<const F32> part = view.subspan(1, 2);
+    EXPECT_EQ(value(F32(part[1])), 1.0f);
+    return take_tally();
+  };
+  const Counts near = use(local), there = use(far);
+  EXPECT_EQ(near[Op::LoadStream], 2u);
+  EXPECT_EQ(near[Op::LoadIndexed], 1u);
+  EXPECT_EQ(near[Op::StoreStream], 1u);
+  EXPECT_EQ(near[Op::StoreIndexed], 1u);
+  EXPECT_EQ(near[Op::LoadL2] + near[Op::StoreL2], 0u);
+  EXPECT_EQ(there[Op::LoadL2], 3u);
+  EXPECT_EQ(there[Op::StoreL2], 2u);
+  EXPECT_EQ(there[Op::LoadStream] + there[Op::LoadIndexed] + there[Op::StoreStream] +
+                there[Op::StoreIndexed],
+            0u);
+}
+
 TEST(MemoryViews, ThePlainValueOfAnIntegerIsAnInt) {
   const int n = value(I32(7));
   EXPECT_EQ(n, 7);

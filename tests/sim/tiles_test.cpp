@@ -169,7 +169,7 @@ TEST(Tiles, TellWhatAProgramWithRoomWouldNotHaveMoved) {
 
 TEST(Tiles, OfAMemoryBeforeExternalMemoryComeFromThere) {
   Machine machine({.cores = 1, .memory = "L2", .record = true, .external = Bytes(4096)});
-  const Words behind = machine.external().alloc<Words>("block", 100);
+  const Words behind = machine.behind().alloc<Words>("block", 100);
   {
     const auto stage = machine.stage("s");
     for_each_tile<P>(
@@ -181,7 +181,7 @@ TEST(Tiles, OfAMemoryBeforeExternalMemoryComeFromThere) {
   EXPECT_EQ(moved.external, Bytes(400));
   EXPECT_EQ(moved.bytes, Bytes(0));
   EXPECT_EQ(moved.tiles, 5);
-  EXPECT_EQ(machine.external().peak(), Bytes(400));
+  EXPECT_EQ(machine.behind().peak(), Bytes(400));
 }
 
 /// Cycles of the stage on a chip whose DMA moves so many bytes in a cycle.

@@ -58,10 +58,10 @@ class LandmarkRecords {
     const auto fitting =
         static_cast<int>(std::min<std::int64_t>(room.count() / each.count(), landmarks));
     resident_ = landmarks;
-    if (fitting < landmarks && machine.external().capacity() > Bytes(0)) {
+    if (fitting < landmarks && machine.behind().capacity() > Bytes(0)) {
       tile_ = std::max(1, fitting / kTilesInRoom);
       resident_ = std::max(0, fitting - 2 * tile_);
-      behind_ = machine.external().alloc<Span>(kName, (landmarks - resident_) * floats_);
+      behind_ = machine.behind().alloc<Span>(kName, (landmarks - resident_) * floats_);
     }
     memory_ = machine.local().alloc<Span>(kName, resident_ * floats_);
   }

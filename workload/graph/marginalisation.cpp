@@ -181,7 +181,7 @@ void marginalise(work::Machine& machine, const Window<P>& window, int departed,
                  WindowPrior<P>& prior) {
   using F = typename P::F32;
   const typename P::Function function("marginalise");
-  const work::Arena::Frame frame(machine.local()), behind(machine.external());
+  const work::Arena::Frame frame(machine.local()), behind(machine.behind());
   const auto others = [&] { return MarginalisationMemory<P>(machine.local(), window); };
   const LandmarkRecords<P> records(machine, window.capacity.landmarks, window.capacity.keyframes,
                                    room_beside(machine.local(), others));

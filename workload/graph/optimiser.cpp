@@ -208,7 +208,7 @@ IterationReport iterate(work::Machine& fc, Window<P>& window, LmState<P>& lm,
   report.lambda = work::value(lm.lambda);
   if (window.keyframes < 2) return report;
 
-  const work::Arena::Frame frame(fc.local()), behind(fc.external());
+  const work::Arena::Frame frame(fc.local()), behind(fc.behind());
   const auto others = [&] { return WorkMemory<P, Terms>(fc.local(), window, options); };
   const LandmarkRecords<P> records(fc, window.capacity.landmarks, window.capacity.keyframes,
                                    room_beside(fc.local(), others));

@@ -110,17 +110,7 @@ void triangulate_landmarks(const Insertion<P, Graph, Words>& in) {
 /// The features take the place of the last keyframe's, the empty places with them.
 template <class P>
 void store_whole_keyframe(FrontEndState<P>& state, const Frame<P>& frame) {
-  work::Machine& machine = state.machine;
-  ObservedFeatures<P>& to = state.keyframe.features;
-  const ObservedFeatures<P>& from = frame.features;
-  machine.copy_out(to.list.x, from.list.x);
-  machine.copy_out(to.list.y, from.list.y);
-  if (from.list.descriptors_in_l2)
-    std::swap(to.list.descriptors, state.keyframe.fresh);
-  else
-    machine.copy_out(to.list.descriptors, from.list.descriptors);
-  machine.copy_out(to.landmarks, from.landmarks);
-  to.list.count = from.list.count;
+  state.keyframe.store(state.machine, frame.features, frame.features.list.capacity);
   state.time_since_keyframe = 0;
 }
 
@@ -166,10 +156,7 @@ void match_keyframe(const FrontEndState<P>& state, Frame<P>& frame) {
   const ObservedFeatures<P>& old = state.keyframe.features;
   KeyframeMatches<P>& matches = frame.matches;
   const DescriptorSource<P> descriptors = keyframe_descriptors(state, old.list.capacity);
-  const int capacity = matches.first_v;
-  machine.copy_in(matches.pixels.subspan(0, capacity), old.list.x);
-  machine.copy_in(matches.pixels.subspan(matches.first_v, capacity), old.list.y);
-  machine.copy_in(matches.landmarks, old.landmarks);
+  copy_keyframe_features(state, matches.first_v, matches);
   levio::match_sources<P>(machine, descriptors_of(frame), descriptors, state.profile.matcher,
                           matches.list);
 }

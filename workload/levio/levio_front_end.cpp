@@ -22,7 +22,7 @@ LevioFrontEnd<P>::LevioFrontEnd(const Profile& profile, const Rig& rig, work::Ma
 
 template <class P>
 FrameReport LevioFrontEnd<P>::process(const FrameInput& input) {
-  const work::Arena::Frame memory(state_.machine.local());
+  const work::EitherFrame memory(state_.machine);
   FrameReport report;
   if (input.wants_features) report.seen.emplace();
   Frame<P> frame;

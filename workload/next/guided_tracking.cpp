@@ -75,8 +75,8 @@ template <class P>
 levio::LandmarkMatches<P> gather_matches(const FrontEndState<P>& state,
                                          const FeatureList<P>& features,
                                          const FoundLandmarks<P>& found,
-                                         typename P::template Span<typename P::F32> points,
-                                         typename P::template Span<typename P::F32> pixels) {
+                                         typename P::template EitherSpan<typename P::F32> points,
+                                         typename P::template EitherSpan<typename P::F32> pixels) {
   using F = typename P::F32;
   using I32 = typename P::I32;
   const MatchList<P>& matches = found.matches;
@@ -121,15 +121,15 @@ std::optional<Pose<P>> search_landmarks(const FrontEndState<P>& state, const Fra
   using Floats = typename P::template Span<typename P::F32>;
   const Profile& profile = state.profile;
   work::Arena& local = state.machine.local();
-  const work::Arena::Frame memory(local);
+  const work::EitherFrame memory(state.machine);
   const FeatureList<P>& features = frame.features.list;
   const int landmarks = work::value(state.graph.landmark_count());
   FoundLandmarks<P> found;
   found.points_in_l2 = !landmarks_fit(state, features.count, landmarks);
   found.points = found.points_in_l2 ? state.graph.points.subspan(0, 3 * landmarks)
                                     : local.alloc<Floats>("landmark points", 3 * landmarks);
-  found.matches = alloc_matches<P>(local, list_capacity(state, std::min(features.count, landmarks)),
-                                   "world matches");
+  found.matches = alloc_matches<P>(
+      state.machine, list_capacity(state, std::min(features.count, landmarks)), "world matches");
   const Pose<P> T_camera_world = inverse(T_predicted);
   match_around(state, features, T_camera_world, search.radius_px, found);
   const int matches = found.matches.count;
@@ -137,8 +137,9 @@ std::optional<Pose<P>> search_landmarks(const FrontEndState<P>& state, const Fra
   if (matches < profile.min_world_matches) return std::nullopt;
 
   const auto stage = state.machine.stage(stages::kRefinement);
-  const auto points = local.alloc<Floats>("matched points", 3 * matches);
-  const auto pixels = local.alloc<Floats>("matched pixels", 2 * matches);
+  using F = typename P::F32;
+  const auto points = work::alloc_either<P, F>(state.machine, "matched points", 3 * matches);
+  const auto pixels = work::alloc_either<P, F>(state.machine, "matched pixels", 2 * matches);
   const auto inliers =
       local.alloc<typename P::template Span<typename P::Byte>>("inlier mask", matches);
   const levio::LandmarkMatches<P> input = gather_matches(state, features, found, points, pixels);
@@ -198,7 +199,7 @@ LEVIOSIM_INSTANTIATE(work::Counting)
 namespace {
 
 template <class P>
-using Numbers = typename P::template Span<typename P::U16>;
+using Numbers = typename P::template EitherSpan<typename P::U16>;
 template <class P>
 using Flags = typename P::template Span<typename P::Byte>;
 
@@ -226,10 +227,10 @@ Bytes aligning_memory(const FrontEndState<P>& state, bool windows) {
 /// Places in the present image where features of the keyframe should be.
 template <class P>
 struct Predictions {
-  Predictions(work::Arena& arena, int capacity)
-      : x(arena.alloc<Numbers<P>>("predicted features", 2 * capacity)),
+  Predictions(work::Machine& machine, int capacity)
+      : x(work::alloc_either<P, typename P::U16>(machine, "predicted features", 2 * capacity)),
         y(x.subspan(capacity, capacity)),
-        pairs(alloc_matches<P>(arena, capacity, "predicted matches")) {}
+        pairs(alloc_matches<P>(machine, capacity, "predicted matches")) {}
 
   Numbers<P> x, y;
   MatchList<P> pairs;  ///< place → feature of the keyframe
@@ -348,7 +349,7 @@ void align_features(const FrontEndState<P>& state, Frame<P>& frame,
   work::Machine& machine = state.machine;
   work::Arena& local = machine.local();
   const auto stage = machine.stage(stages::kPatches);
-  const work::Arena::Frame memory(local);
+  const work::EitherFrame memory(machine);
   const int steps = state.profile.extractor.subpixel_steps;
   const KeyframeMatches<P>& matches = frame.matches;
   const int n = matches.first_v;
@@ -366,7 +367,8 @@ void align_features(const FrontEndState<P>& state, Frame<P>& frame,
   if (!T_predicted || !(options.reach > 0)) return;
   const auto matched = local.alloc<Flags<P>>("matched", n);
   mark_matched<P>(matches.list, state.keyframe.features.list.count, matched);
-  Predictions<P> predictions(local, state.residence.whole_lists ? n : most_found_by_patches(state));
+  Predictions<P> predictions(machine,
+                             state.residence.whole_lists ? n : most_found_by_patches(state));
   predict_landmarks<P>(state, frame, inverse(*T_predicted), matched, predictions);
   align_patches<P>(machine, before, {image, predictions.x, predictions.y, !one}, steps,
                    options.reach, options, predictions.pairs, aligned);

@@ -29,7 +29,7 @@ NextFrontEnd<P>::NextFrontEnd(const Profile& profile, const Rig& rig, work::Mach
 
 template <class P>
 FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
-  const work::Arena::Frame memory(state_.machine.local());
+  const work::EitherFrame memory(state_.machine);
   FrameReport report;
   if (input.wants_features) report.seen.emplace();
   TrackedFrame<P> frame;
@@ -112,7 +112,7 @@ void NextFrontEnd<P>::look_for_motion(TrackedFrame<P>& frame) {
   };
   if (!inertial_.rest() && !inertial_.rest_is_rejected()) rest_ = {};
   if (!starts_at_rest() || state_.time_since_keyframe > limits.image_time) return;
-  const work::Arena::Frame memory(state_.machine.local());
+  const work::EitherFrame memory(state_.machine);
   match_last_keyframe(frame);
   align_features<P>(state_, frame, std::nullopt);
   const auto stage = state_.machine.stage(stages::kGuided);

@@ -8,11 +8,12 @@
 
 namespace leviosim::vio {
 
-/// Matches with the features of the last keyframe, and what is known of those; all in L1.
+/// Matches with the features of the last keyframe, and what is known of those; in L1 if they have
+/// room there.
 template <class P>
 struct KeyframeMatches {
   using I32 = typename P::I32;
-  using Table = typename P::template Span<typename P::U16>;
+  using Table = typename P::template EitherSpan<typename P::U16>;
 
   /// Where the keyframe's feature `old` is.
   I32 u(I32 old) const { return pixels[old]; }
@@ -21,12 +22,13 @@ struct KeyframeMatches {
   MatchList<P> list;  ///< current feature → feature of the last keyframe
   Table pixels;       ///< u of all keyframe features, from first_v on their v
   int first_v = 0;
-  Table landmarks;  ///< of the keyframe features
+  Table landmarks;     ///< of the keyframe features
+  bool in_l2 = false;  ///< both tables are the keyframe's own
 };
 
 template <class P>
 struct Frame {
-  ObservedFeatures<P> features;  ///< in L1
+  ObservedFeatures<P> features;
   KeyframeMatches<P> matches;
   Pose<P> T_world_camera{};
 };

@@ -41,8 +41,8 @@ MatchList<P> match_landmarks(const FrontEndState<P>& state, const Frame<P>& fram
   if (resident)
     descriptors = machine.local().alloc<Words>("landmark descriptors",
                                                kDescriptorWords * graph.capacity.landmarks);
-  MatchList<P> list = alloc_matches<P>(
-      machine.local(), list_capacity(state, frame.features.list.count), "world matches");
+  MatchList<P> list =
+      alloc_matches<P>(machine, list_capacity(state, frame.features.list.count), "world matches");
   if (resident) machine.copy_in(descriptors, graph.descriptors);
   const DescriptorSource<P> reference{descriptors, work::value(graph.landmark_count()), !resident,
                                       "tile of landmark descriptors"};
@@ -52,13 +52,13 @@ MatchList<P> match_landmarks(const FrontEndState<P>& state, const Frame<P>& fram
 
 template <class P>
 struct MatchedSpans {
-  using Floats = typename P::template Span<typename P::F32>;
+  using F = typename P::F32;
 
-  MatchedSpans(work::Arena& local, int matches)
-      : points(local.alloc<Floats>("matched points", 3 * matches)),
-        pixels(local.alloc<Floats>("matched pixels", 2 * matches)) {}
+  MatchedSpans(work::Machine& machine, int matches)
+      : points(work::alloc_either<P, F>(machine, "matched points", 3 * matches)),
+        pixels(work::alloc_either<P, F>(machine, "matched pixels", 2 * matches)) {}
 
-  Floats points, pixels;
+  typename P::template EitherSpan<F> points, pixels;
 };
 
 /// The matches with landmarks that are not too old, side by side; marks their features.
@@ -94,13 +94,13 @@ LandmarkMatches<P> gather(const FrontEndState<P>& state, const Frame<P>& frame,
   work::Arena& local = machine.local();
   if (!resident)
     return gather<P>(state, frame, list, state.graph_in_l2.points, state.graph_in_l2.ages,
-                     MatchedSpans<P>(local, list.count));
+                     MatchedSpans<P>(machine, list.count));
   const int capacity = state.graph.capacity.landmarks;
   const auto points =
       local.alloc<typename P::template Span<typename P::F32>>("landmark points", 3 * capacity);
   const auto ages =
       local.alloc<typename P::template Span<typename P::Byte>>("landmark ages", capacity);
-  const MatchedSpans<P> matched(local, list.count);
+  const MatchedSpans<P> matched(machine, list.count);
   machine.copy_in(points, state.graph.points);
   machine.copy_in(ages, state.graph.ages);
   return gather<P>(state, frame, list, points, ages, matched);
@@ -114,7 +114,7 @@ std::optional<Pose<P>> pose_from_landmarks(const FrontEndState<P>& state,
                                            levio::ShiftRegister<P>& random, Frame<P>& frame,
                                            FrameReport& report) {
   const Profile& profile = state.profile;
-  const work::Arena::Frame memory(state.machine.local());
+  const work::EitherFrame memory(state.machine);
   LandmarkMatches<P> matches;
   {
     const auto stage = state.machine.stage(stages::kWorldMatching);
@@ -150,15 +150,16 @@ namespace {
 /// Both views of all matches, in pixels and in normalised coordinates. Either may be missing.
 template <class P>
 struct Views {
-  using Floats = typename P::template Span<typename P::F32>;
+  using F = typename P::F32;
+  using Floats = typename P::template EitherSpan<F>;
 
-  void alloc_pixels(work::Arena& local, int matches) {
-    pixels_a = local.alloc<Floats>("keypoints of the keyframe", 2 * matches);
-    pixels_b = local.alloc<Floats>("keypoints", 2 * matches);
+  void alloc_pixels(work::Machine& machine, int matches) {
+    pixels_a = work::alloc_either<P, F>(machine, "keypoints of the keyframe", 2 * matches);
+    pixels_b = work::alloc_either<P, F>(machine, "keypoints", 2 * matches);
   }
-  void alloc_normalised(work::Arena& local, int matches) {
-    a = local.alloc<Floats>("normalised keypoints of the keyframe", 2 * matches);
-    b = local.alloc<Floats>("normalised keypoints", 2 * matches);
+  void alloc_normalised(work::Machine& machine, int matches) {
+    a = work::alloc_either<P, F>(machine, "normalised keypoints of the keyframe", 2 * matches);
+    b = work::alloc_either<P, F>(machine, "normalised keypoints", 2 * matches);
   }
   levio::PixelMatches<P> pixels(int n) const { return {pixels_a, pixels_b, n}; }
   levio::TwoViewMatches<P> normalised(int n) const { return {a, b, n}; }
@@ -167,7 +168,7 @@ struct Views {
 };
 
 template <class P>
-void put(typename P::template Span<typename P::F32> to, int i, typename P::F32 x,
+void put(typename P::template EitherSpan<typename P::F32> to, int i, typename P::F32 x,
          typename P::F32 y) {
   to[2 * i] = x;
   to[2 * i + 1] = y;
@@ -225,7 +226,7 @@ Pose<P> pose_from_keyframe(const FrontEndState<P>& state, levio::ShiftRegister<P
 
   work::Machine& machine = state.machine;
   work::Arena& local = machine.local();
-  const work::Arena::Frame memory(local);
+  const work::EitherFrame memory(machine);
   const auto stage = machine.stage(stages::kEightPoint);
   const CameraConstants<P> camera(state.rig.camera);
   // Without room for both, pixels take the place of normalised coordinates when those are done
@@ -233,15 +234,15 @@ Pose<P> pose_from_keyframe(const FrontEndState<P>& state, levio::ShiftRegister<P
   const bool both = memory_of_both_views(n, machine.cores()) <= local.free();
   Views<P> views;
   if (both) {
-    views.alloc_pixels(local, n);
-    views.alloc_normalised(local, n);
+    views.alloc_pixels(machine, n);
+    views.alloc_normalised(machine, n);
   }
   const auto inliers = local.alloc<typename P::template Span<typename P::Byte>>("inlier mask", n);
   const MatrixView<P> essential = alloc_matrix<P>(local, "best essential matrix", 3, 3);
   levio::EssentialResult<P> found;
   {
-    const work::Arena::Frame normalised(local);
-    if (!both) views.alloc_normalised(local, n);
+    const work::EitherFrame normalised(machine);
+    if (!both) views.alloc_normalised(machine, n);
     gather(state, frame, camera, views);
     const F pixel = F(profile.essential_inlier_px) / camera.fx();
     found = levio::estimate_essential<P>(machine, views.normalised(n), pixel * pixel, random,
@@ -250,7 +251,7 @@ Pose<P> pose_from_keyframe(const FrontEndState<P>& state, levio::ShiftRegister<P
   if (!found.ok) return last.T_world_camera;
   if (!both) {
     views = {};
-    views.alloc_pixels(local, n);
+    views.alloc_pixels(machine, n);
     gather(state, frame, camera, views);
   }
   const levio::RecoveredPose<P> motion =

@@ -18,6 +18,9 @@ Bytes memory_of_epnp(const Profile& profile, int matches, int cores) {
 
 /// For tiles and for the scratch of a core.
 constexpr Bytes kBesideLists{12 * 1024};
+/// Of each feature, in lists: matches with landmarks and those of one way, what EPnP takes of them;
+/// or matches with the keyframe, those of one way, and both views.
+constexpr std::int64_t kListedBehind = 2 * 6 + 5 * 4;
 
 /// Descriptors stay where those of two frames have room, as matching needs them, and where they
 /// leave room for EPnP on all cores. Places take theirs from local memory (next/loop).
@@ -32,7 +35,7 @@ Residence residence_in(const work::Machine& machine, const Profile& profile, con
   residence.descriptors = profile.loop.enabled || features + beside <= room;
   // Features, their matches, those of one way, and what is known of the keyframe's features.
   constexpr std::int64_t kListed = 4 * 6;
-  residence.whole_lists = Bytes(kListed * capacity) + kBesideLists <= room;
+  residence.whole_lists = residence.descriptors || Bytes(kListed * capacity) + kBesideLists <= room;
   residence.image = observed_features_size<P>(capacity, residence.descriptors) +
                         options.memory_of_whole_image(rig.width, rig.height, machine.cores()) <=
                     room;
@@ -53,7 +56,13 @@ FrontEndState<P>::FrontEndState(const Profile& parameters, const Rig& camera_rig
       keyframe(keyframe_memory, profile.extractor.max_features(rig.width, rig.height), rig.width,
                rig.height, residence, profile.patches.enabled, profile.stillness),
       graph(in_l2),
-      graph_in_l2(seen_from_cluster<P>(in_l2)) {}
+      graph_in_l2(seen_from_cluster<P>(in_l2)) {
+  if (residence.whole_lists) return;
+  using Bytes8 = typename P::template Span<typename P::Byte>;
+  const Bytes lists(kListedBehind * keyframe.features.list.capacity);
+  keyframe_memory.alloc<Bytes8>("lists of the frame", static_cast<int>(lists.count()));
+  machine.set_behind(work::Arena("L2", lists), kBesideLists);
+}
 
 namespace {
 
@@ -63,7 +72,7 @@ FeatureList<P> alloc_list(const FrontEndState<P>& state, int capacity) {
   work::Arena& local = state.machine.local();
   if (state.residence.descriptors) return alloc_features<P>(local, capacity);
   FeatureList<P> list = alloc_keypoints<P>(local, capacity);
-  list.descriptors = state.keyframe.fresh;
+  list.descriptors = state.keyframe.fresh.list.descriptors;
   list.descriptors_in_l2 = true;
   return list;
 }
@@ -86,24 +95,31 @@ template <class P>
 ObservedFeatures<P> features_of_frame(const FrontEndState<P>& state,
                                       const std::function<void(FeatureList<P>&)>& extract) {
   work::Arena& local = state.machine.local();
-  const FeatureList<P>& old = state.keyframe.features.list;
-  const bool whole = state.residence.whole_lists || state.residence.descriptors;
-  ObservedFeatures<P> features;
-  if (whole) {
-    features.list = alloc_list(state, old.capacity);
-  } else {
-    FeatureList<P> all;
-    {
-      const work::Arena::Frame room(local);
-      all = alloc_list(state, old.capacity);
-      extract(all);
-    }
-    features.list =
-        shortened(state, all, std::min(old.capacity, all.count + most_found_by_patches(state)));
+  const int most = state.keyframe.features.list.capacity;
+  const auto with_landmarks = [&](const FeatureList<P>& list) {
+    return ObservedFeatures<P>{list, local.alloc<typename P::template Span<typename P::U16>>(
+                                         "landmarks of features", list.capacity)};
+  };
+  if (state.residence.whole_lists) {
+    ObservedFeatures<P> features = with_landmarks(alloc_list(state, most));
+    extract(features.list);
+    return features;
   }
-  features.landmarks = local.alloc<typename P::template Span<typename P::U16>>(
-      "landmarks of features", features.list.capacity);
-  if (whole) extract(features.list);
+  FeatureList<P> all;
+  {
+    const work::Arena::Frame room(local);
+    all = alloc_list(state, most);
+    extract(all);
+  }
+  const int capacity = std::min(most, all.count + most_found_by_patches(state));
+  if (state.machine.has_room(observed_features_size<P>(capacity, false)))
+    return with_landmarks(shortened(state, all, capacity));
+  ObservedFeatures<P> features = state.keyframe.fresh;
+  state.machine.copy_out(features.list.x, all.x.subspan(0, all.count));
+  state.machine.copy_out(features.list.y, all.y.subspan(0, all.count));
+  features.list.count = all.count;
+  features.list.capacity = capacity;
+  features.list.descriptors_in_l2 = true;
   return features;
 }
 

@@ -5,7 +5,7 @@
 
 namespace leviosim::vio {
 
-/// Room for the matches in L1, for as long as the caller needs them.
+/// Room for the matches, for as long as the caller needs them: in L1, or in L2 where L1 has none.
 template <class P>
 void alloc_keyframe_matches(const FrontEndState<P>& state, Frame<P>& frame);
 
@@ -15,6 +15,12 @@ void alloc_keyframe_matches(const FrontEndState<P>& state, Frame<P>& frame);
 /// @param number  of features that are copied
 template <class P>
 DescriptorSource<P> keyframe_descriptors(const FrontEndState<P>& state, int number);
+
+/// What is known of the keyframe's features goes to L1, unless it is read from L2.
+/// @param number  of features that are copied
+template <class P>
+void copy_keyframe_features(const FrontEndState<P>& state, int number,
+                            const KeyframeMatches<P>& to);
 
 /// Fills frame.matches, and leaves the keyframe's descriptors in L1 above them.
 template <class P>

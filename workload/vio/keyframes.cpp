@@ -151,18 +151,7 @@ void insert_keyframe(FrontEndState<P>& state, Frame<P>& frame, float any_depth) 
 
 template <class P>
 void store_keyframe(FrontEndState<P>& state, const Frame<P>& frame) {
-  work::Machine& machine = state.machine;
-  ObservedFeatures<P>& to = state.keyframe.features;
-  const FeatureList<P>& from = frame.features.list;
-  const int n = from.count;
-  machine.copy_out(to.list.x, from.x.subspan(0, n));
-  machine.copy_out(to.list.y, from.y.subspan(0, n));
-  if (from.descriptors_in_l2)
-    std::swap(to.list.descriptors, state.keyframe.fresh);
-  else
-    machine.copy_out(to.list.descriptors, from.descriptors.subspan(0, kDescriptorWords * n));
-  machine.copy_out(to.landmarks, frame.features.landmarks.subspan(0, n));
-  to.list.count = n;
+  state.keyframe.store(state.machine, frame.features, frame.features.list.count);
   // The camera writes the next image to where the one of the keyframe before was.
   if (state.keyframe.seen.width > 0) std::swap(state.keyframe.image, state.keyframe.seen);
   state.time_since_keyframe = 0;
@@ -182,16 +171,26 @@ LEVIOSIM_INSTANTIATE(work::Counting)
 template <class P>
 void alloc_keyframe_matches(const FrontEndState<P>& state, Frame<P>& frame) {
   using Table = typename KeyframeMatches<P>::Table;
-  work::Arena& local = state.machine.local();
-  const int old = state.keyframe.features.list.count;
-  const int capacity = list_capacity(state, old);
+  using Numbers = typename P::template Span<typename P::U16>;
+  work::Machine& machine = state.machine;
+  const ObservedFeatures<P>& old = state.keyframe.features;
+  const int capacity = list_capacity(state, old.list.count);
+  KeyframeMatches<P>& matches = frame.matches;
   // Features of the keyframe that are found by their patches become matches, too.
-  frame.matches.list = alloc_matches<P>(
-      local, list_capacity(state, frame.features.list.count + most_found_by_patches(state)),
+  matches.list = alloc_matches<P>(
+      machine, list_capacity(state, frame.features.list.count + most_found_by_patches(state)),
       "frame matches");
-  frame.matches.pixels = local.alloc<Table>("keypoints of the keyframe", 2 * capacity);
-  frame.matches.first_v = capacity;
-  frame.matches.landmarks = local.alloc<Table>("landmarks of the keyframe", capacity);
+  matches.in_l2 = !machine.has_room(Bytes(3LL * sizeof(typename P::U16) * capacity));
+  if (matches.in_l2) {
+    // The columns of a list lie one behind the other.
+    matches.first_v = old.list.capacity;
+    matches.pixels = Table(old.list.x.data(), 2 * matches.first_v).in_l2();
+    matches.landmarks = old.landmarks;
+    return;
+  }
+  matches.first_v = capacity;
+  matches.pixels = machine.local().alloc<Numbers>("keypoints of the keyframe", 2 * capacity);
+  matches.landmarks = machine.local().alloc<Numbers>("landmarks of the keyframe", capacity);
 }
 
 template <class P>
@@ -210,6 +209,17 @@ DescriptorSource<P> keyframe_descriptors(const FrontEndState<P>& state, int numb
 }
 
 template <class P>
+void copy_keyframe_features(const FrontEndState<P>& state, int number,
+                            const KeyframeMatches<P>& to) {
+  if (to.in_l2) return;
+  work::Machine& machine = state.machine;
+  const ObservedFeatures<P>& old = state.keyframe.features;
+  machine.copy_in(to.pixels.subspan(0, number), old.list.x);
+  machine.copy_in(to.pixels.subspan(to.first_v, number), old.list.y);
+  machine.copy_in(to.landmarks.subspan(0, number), old.landmarks);
+}
+
+template <class P>
 void match_keyframe(const FrontEndState<P>& state, Frame<P>& frame) {
   work::Machine& machine = state.machine;
   const auto stage = machine.stage(stages::kFrameMatching);
@@ -217,9 +227,7 @@ void match_keyframe(const FrontEndState<P>& state, Frame<P>& frame) {
   KeyframeMatches<P>& matches = frame.matches;
   const int n = old.list.count;
   const DescriptorSource<P> descriptors = keyframe_descriptors(state, n);
-  machine.copy_in(matches.pixels.subspan(0, n), old.list.x);
-  machine.copy_in(matches.pixels.subspan(matches.first_v, n), old.list.y);
-  machine.copy_in(matches.landmarks.subspan(0, n), old.landmarks);
+  copy_keyframe_features(state, n, matches);
   match_sources<P>(machine, descriptors_of(frame), descriptors, state.profile.matcher,
                    matches.list);
 }
@@ -228,6 +236,10 @@ template DescriptorSource<work::Native> keyframe_descriptors(const FrontEndState
                                                              int);
 template DescriptorSource<work::Counting> keyframe_descriptors(const FrontEndState<work::Counting>&,
                                                                int);
+template void copy_keyframe_features(const FrontEndState<work::Native>&, int,
+                                     const KeyframeMatches<work::Native>&);
+template void copy_keyframe_features(const FrontEndState<work::Counting>&, int,
+                                     const KeyframeMatches<work::Counting>&);
 template void alloc_keyframe_matches(const FrontEndState<work::Native>&, Frame<work::Native>&);
 template void alloc_keyframe_matches(const FrontEndState<work::Counting>&, Frame<work::Counting>&);
 template void match_keyframe(const FrontEndState<work::Native>&, Frame<work::Native>&);

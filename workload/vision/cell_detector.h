@@ -15,7 +15,7 @@ template <class P>
 class BestOfCell {
   using I = typename P::I32;
   using U16 = typename P::U16;
-  using Coordinates = typename P::template Span<U16>;
+  using Coordinates = typename P::template EitherSpan<U16>;
 
  public:
   BestOfCell(Coordinates x, Coordinates y, int capacity) : x_(x), y_(y), capacity_(capacity) {}

@@ -59,8 +59,8 @@ PixelBox<P> box_of_cell(ConstImageView<P> image, const ExtractorOptions& options
 template <class P>
 typename P::I32 detect(ConstImageView<P> image, const ExtractionTables<P>& tables,
                        const ExtractorOptions& options, work::Share cells,
-                       typename P::template Span<typename P::U16> x,
-                       typename P::template Span<typename P::U16> y) {
+                       typename P::template EitherSpan<typename P::U16> x,
+                       typename P::template EitherSpan<typename P::U16> y) {
   using I = typename P::I32;
   const I cells_per_row = options.cells_along(image.width);
   I found = 0;

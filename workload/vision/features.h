@@ -43,7 +43,7 @@ using ConstImageView = ImageView<P, const typename P::Byte>;
 /// local memory if they have room there.
 template <class P>
 struct FeatureList {
-  typename P::template Span<typename P::U16> x, y;
+  typename P::template EitherSpan<typename P::U16> x, y;
   typename P::template Span<typename P::U32> descriptors;
   int count = 0;
   int capacity = 0;

@@ -15,21 +15,22 @@ template <class P>
 struct Cells {
   using I = typename P::I32;
   using U16 = typename P::U16;
-  using Table = typename P::template Span<U16>;
 
   /// @param cell  their side in px
-  Cells(work::Arena& arena, int cell, int width, int height, int steps_per_px, int features)
+  Cells(work::Machine& machine, int cell, int width, int height, int steps_per_px, int features)
       : columns((width + cell - 1) / cell),
         rows((height + cell - 1) / cell),
         side(cell * steps_per_px),
-        begin(arena.alloc<Table>("cells of features", columns * rows + 1)),
-        order(arena.alloc<Table>("features by cell", features)) {}
+        begin(machine.local().template alloc<typename P::template Span<U16>>("cells of features",
+                                                                             columns * rows + 1)),
+        order(work::alloc_either<P, U16>(machine, "features by cell", features)) {}
 
   I cell_of(I x, I y) const { return (y / I(side)) * I(columns) + x / I(side); }
 
   int columns, rows;
   int side;  ///< in units of the coordinates
-  Table begin, order;
+  typename P::template Span<U16> begin;
+  typename P::template EitherSpan<U16> order;
 };
 
 /// Counting sort; leaves begin[c] at the first feature of cell c.
@@ -160,7 +161,7 @@ void for_landmarks(work::Machine& machine, const GuidedInput<P>& input, Visit&& 
 /// The landmark that gets a feature is its owner.
 template <class P>
 void settle(const Claims<P>& claims, int landmarks, int features,
-            typename P::template Span<typename P::U16> owners, MatchList<P>& out) {
+            typename P::template EitherSpan<typename P::U16> owners, MatchList<P>& out) {
   using I = typename P::I32;
   using U16 = typename P::U16;
   const typename P::Function function("settle_claims");
@@ -200,14 +201,13 @@ void match_guided(work::Machine& machine, const GuidedInput<P>& input,
         "the match list has room for every feature or every landmark");
   check(options.max_distance <= 255, "distances of guided matches are kept in a byte");
   work::Arena& local = machine.local();
-  const work::Arena::Frame frame(local);
-  const Cells<P> cells(local, options.cell_px, input.width, input.height, input.steps,
+  const work::EitherFrame frame(machine);
+  const Cells<P> cells(machine, options.cell_px, input.width, input.height, input.steps,
                        features.count);
   const Claims<P> claims{
       local.alloc<typename P::template Span<typename P::U16>>("claimed features", input.landmarks),
       local.alloc<typename P::template Span<typename P::Byte>>("distances", input.landmarks)};
-  const auto owners =
-      local.alloc<typename P::template Span<typename P::U16>>("owners", features.count);
+  const auto owners = work::alloc_either<P, typename P::U16>(machine, "owners", features.count);
   sort_features<P>(features, cells);
   for_landmarks<P>(machine, input, [&](const GuidedInput<P>& part, int first) {
     const Claims<P> of_part{claims.feature.subspan(first, part.landmarks),

@@ -8,7 +8,7 @@
 // Left out: which landmarks are too old to count, which the pipeline decides afterwards.
 #pragma once
 
-#include "sim/work/machine.h"
+#include "sim/work/either.h"
 #include "workload/vision/hamming.h"
 
 namespace leviosim::vio {
@@ -17,22 +17,31 @@ namespace leviosim::vio {
 /// reference feature reference[i], at Hamming distance distance[i]. 6 bytes per match.
 template <class P>
 struct MatchList {
-  typename P::template Span<typename P::U16> query, reference, distance;
+  typename P::template EitherSpan<typename P::U16> query, reference, distance;
   int count = 0;
   int capacity = 0;
 };
 
-/// An empty list in `arena`, one block.
+/// An empty list in this memory, which holds a third as many matches.
+template <class P>
+MatchList<P> matches_in(typename P::template EitherSpan<typename P::U16> block) {
+  const int capacity = block.size() / 3;
+  return {block.subspan(0, capacity), block.subspan(capacity, capacity),
+          block.subspan(2 * capacity, capacity), 0, capacity};
+}
+
+/// An empty list, one block in `arena`.
 template <class P>
 MatchList<P> alloc_matches(work::Arena& arena, int capacity, std::string_view name = "matches") {
   using Numbers = typename P::template Span<typename P::U16>;
-  MatchList<P> list;
-  const Numbers block = arena.alloc<Numbers>(name, 3 * capacity);
-  list.query = block.subspan(0, capacity);
-  list.reference = block.subspan(capacity, capacity);
-  list.distance = block.subspan(2 * capacity, capacity);
-  list.capacity = capacity;
-  return list;
+  return matches_in<P>(arena.alloc<Numbers>(name, 3 * capacity));
+}
+
+/// The same, in local memory if it has room there.
+template <class P>
+MatchList<P> alloc_matches(work::Machine& machine, int capacity,
+                           std::string_view name = "matches") {
+  return matches_in<P>(work::alloc_either<P, typename P::U16>(machine, name, 3 * capacity));
 }
 
 struct MatcherOptions {

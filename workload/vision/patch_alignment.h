@@ -36,15 +36,12 @@ enum class PatchVerdict : std::int8_t {
   Disagrees  ///< the patches agree nowhere near the feature
 };
 
-/// An image and the features in it that are matched, in local memory. Coordinates are in units of
-/// 1/steps px. An image may lie in L2: then a core copies the window around each feature.
+/// An image and the features in it that are matched. Coordinates are in units of 1/steps px. An
+/// image may lie in L2: then a core copies the window around each feature.
 template <class P>
 struct PatchView {
-  template <class T>
-  using Span = typename P::template Span<T>;
-
   ConstImageView<P> image;
-  Span<typename P::U16> x, y;
+  typename P::template EitherSpan<typename P::U16> x, y;
   bool in_l2 = false;  ///< the image
 };
 

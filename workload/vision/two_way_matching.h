@@ -162,11 +162,11 @@ void match(work::Machine& machine, const DescriptorSource<P>& current,
            const DescriptorSource<P>& reference, const MatcherOptions& options, MatchList<P>& out) {
   check(out.capacity >= current.count, "the match list has room for every current feature");
   work::Arena& memory = machine.local();
-  const work::Arena::Frame frame(memory);
+  const work::EitherFrame frame(machine);
   // As long as the list that comes out; where half of the room would go, as there are features.
   const bool is_short = Bytes(12LL * out.capacity) > memory.free();
   MatchList<P> one_way =
-      alloc_matches<P>(memory, is_short ? current.count : out.capacity, "one-way matches");
+      alloc_matches<P>(machine, is_short ? current.count : out.capacity, "one-way matches");
   const auto kept =
       memory.alloc<typename P::template Span<typename P::I32>>("matches per core", machine.cores());
   // Where both pass in tiles, each has half of the room.

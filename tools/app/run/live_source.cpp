@@ -186,7 +186,7 @@ void LiveSource::describe(RunResult& result) const {
                                     {"pose graph", odometry_->pose_graph_memory()},
                                     {"loop closure", odometry_->loop_memory()}})
     if (arena.used() > Bytes(0)) result.l2.push_back({name, arena.used(), arena.live()});
-  if (const work::Arena& external = controller_.external(); external.peak() > Bytes(0))
+  if (const work::Arena& external = controller_.behind(); external.peak() > Bytes(0))
     result.external.push_back({kOptimiserExternal, external.peak(), external.blocks_at_peak()});
   result.passages = cluster_.passages();
   result.passages.insert(result.passages.end(), controller_.passages().begin(),

@@ -18,7 +18,7 @@ inline constexpr int kEssentialSample = 8;  ///< matches
 /// b[2i], b[2i+1].
 template <class P>
 struct TwoViewMatches {
-  typename P::template Span<const typename P::F32> a, b;
+  typename P::template EitherSpan<const typename P::F32> a, b;
   int n;
 
   Vec2<P> in_a(int i) const { return {a[2 * i], a[2 * i + 1]}; }

@@ -12,12 +12,12 @@
 
 namespace leviosim::vio::levio {
 
-/// Matches of landmarks and pixels, in local memory.
+/// Matches of landmarks and pixels.
 template <class P>
 struct LandmarkMatches {
-  typename P::template Span<const typename P::F32> points;  ///< 3 per match, world frame, m
-  typename P::template Span<const typename P::F32> pixels;  ///< 2 per match: u, v in px
-  int n = 0;                                                ///< at least kEpnpSample
+  typename P::template EitherSpan<const typename P::F32> points;  ///< 3 per match, world frame, m
+  typename P::template EitherSpan<const typename P::F32> pixels;  ///< 2 per match: u, v in px
+  int n = 0;                                                      ///< at least kEpnpSample
 };
 
 struct EpnpRansacOptions {

@@ -66,18 +66,20 @@ inline work::Share slice_of(int n, const work::Core& core) {
   return {std::min(n, core.id * each), std::min(n, (core.id + 1) * each)};
 }
 
+/// The matches from first on, as many as points have room.
 template <class P>
 void triangulate_all(work::Machine& machine, MatrixView<P> T_a, MatrixView<P> T_b,
-                     const PixelMatches<P>& matches, const CameraConstants<P>& camera,
+                     const PixelMatches<P>& matches, int first, const CameraConstants<P>& camera,
                      MatrixView<P> points) {
   using F = typename P::F32;
   machine.fork_aligned_on_one_core(
       "recover pose",
       [&](work::Core& core) {
-        const auto [begin, end] = slice_of(matches.n, core);
+        const auto [begin, end] = slice_of(points.rows(), core);
         for (int i : P::range(begin, end)) {
-          const Vec2<P> a{F(matches.a[2 * i]), F(matches.a[2 * i + 1])};
-          const Vec2<P> b{F(matches.b[2 * i]), F(matches.b[2 * i + 1])};
+          const int at = 2 * (first + i);
+          const Vec2<P> a{F(matches.a[at]), F(matches.a[at + 1])};
+          const Vec2<P> b{F(matches.b[at]), F(matches.b[at + 1])};
           const Vec3<P> x = triangulate<P>(T_a, T_b, a, b, camera, core.scratch);
           points(i, 0) = x.x;
           points(i, 1) = x.y;
@@ -103,6 +105,14 @@ typename P::I32 count_in_front(MatrixView<P> points, MatrixView<P> T_b) {
   return in_front;
 }
 
+/// As many of the points as have room beside the scratch of the cores, and that of write_poses().
+int points_at_once(const work::Machine& machine, int matches) {
+  constexpr Bytes kPoint(3 * 4), kPadding(4), kOfPoses(512);
+  const Bytes scratch = std::max(kOfPoses, (kTriangulationScratch + kPadding) * machine.cores());
+  const Bytes room = machine.local().free() - scratch;
+  return static_cast<int>(std::clamp<std::int64_t>(room.count() / kPoint.count(), 1, matches));
+}
+
 }  // namespace
 
 template <class P>
@@ -114,15 +124,21 @@ RecoveredPose<P> recover_pose(work::Machine& machine, MatrixView<P> essential,
   const work::Arena::Frame frame(local);
   const MatrixView<P> poses = alloc_matrix<P>(local, "poses of the essential matrix", kPoses, 16);
   const MatrixView<P> T_a = alloc_matrix<P>(local, "pose of the keyframe", 4, 4);
-  const MatrixView<P> points = alloc_matrix<P>(local, "triangulated points", matches.n, 3);
+  const MatrixView<P> points =
+      alloc_matrix<P>(local, "triangulated points", points_at_once(machine, matches.n), 3);
   write_poses<P>(poses, essential, local);
   store_pose<P>(T_a, Pose<P>::identity());
   RecoveredPose<P> best;
   I32 most_in_front = 0;
   for (int k : P::range(0, kPoses)) {
     const MatrixView<P> T_b(poses.row(k), 4, 4);
-    triangulate_all<P>(machine, T_a, T_b, matches, camera, points);
-    const I32 in_front = count_in_front<P>(points, T_b);
+    I32 in_front = 0;
+    for (int first = 0; first < matches.n; first += points.rows()) {
+      const MatrixView<P> part(points.data(), std::min(points.rows(), matches.n - first), 3);
+      triangulate_all<P>(machine, T_a, T_b, matches, first, camera, part);
+      const I32 of_part = count_in_front<P>(part, T_b);
+      in_front = first == 0 ? of_part : I32(in_front + of_part);
+    }
     if (in_front > most_in_front) {
       most_in_front = in_front;
       best = {true, load_pose<P>(T_b), work::value(in_front)};

@@ -16,7 +16,7 @@ namespace leviosim::vio::levio {
 /// Where both views saw the matches, in px: match i at a[2i], a[2i+1] and b[2i], b[2i+1].
 template <class P>
 struct PixelMatches {
-  typename P::template Span<const typename P::F32> a, b;
+  typename P::template EitherSpan<const typename P::F32> a, b;
   int n;
 };
 

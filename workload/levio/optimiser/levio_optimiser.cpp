@@ -182,7 +182,7 @@ IterationReport optimise_once(work::Machine& machine, Window<P>& window, LmState
   report.lambda = work::value(lm.lambda);
   if (window.keyframes < 2) return report;
 
-  const work::Arena::Frame frame(machine.local()), behind(machine.external());
+  const work::Arena::Frame frame(machine.local()), behind(machine.behind());
   const auto others = [&] { return WorkMemory<P>(machine.local(), window, options); };
   const LandmarkRecords<P> records(machine, window.capacity.landmarks, window.capacity.keyframes,
                                    room_beside(machine.local(), others));

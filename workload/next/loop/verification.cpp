@@ -39,7 +39,7 @@ std::optional<YawTransform<P>> first_pose(work::Machine& machine, const StoredVi
                                           levio::ShiftRegister<P>& random) {
   work::Arena& local = machine.local();
   const work::Arena::Frame memory(local);
-  MatchList<P> matches = alloc_matches<P>(local, place.count);
+  MatchList<P> matches = alloc_matches<P>(machine, place.count);
   match_place<P>(machine, features, place.descriptors, place.count, options, matches);
   if (matches.count < options.min_matches) return std::nullopt;
   const UprightInput<P> input{gather(local, place, features, matches, camera), camera.camera,
@@ -58,7 +58,7 @@ MatchList<P> search_around(work::Machine& machine, const StoredView<P>& place,
   using I32 = typename P::I32;
   using Byte = typename P::Byte;
   work::Arena& local = machine.local();
-  MatchList<P> matches = alloc_matches<P>(local, features.capacity);
+  MatchList<P> matches = alloc_matches<P>(machine, features.capacity);
   const auto ages = local.alloc<typename P::template Span<Byte>>("ages", place.count);
   for (int i : P::range(0, place.count)) ages[i] = work::narrow<Byte>(I32(0));
   const GuidedInput<P> input{
