@@ -23,6 +23,7 @@ NextFrontEnd<P>::NextFrontEnd(const Profile& profile, const Rig& rig, work::Mach
       inertial_(state_),
       prediction_(state_, inertial_, map_, keyframe_memory),
       random_(profile.sampling_seed),
+      fixed_(state_, inertial_, keyframe_memory),
       path_(state_, inertial_, keyframe_memory, profile.frames_that_wait(rig.frame_rate)) {
   if (profile.loop.enabled) loop_.emplace(state_, loop_memory);
 }
@@ -249,6 +250,7 @@ void NextFrontEnd<P>::follow(TrackedFrame<P>& frame, FrameReport& report) {
   frame.T_world_last = prediction_.last_pose();
   match_last_keyframe(frame);
   align_features<P>(state_, frame, std::nullopt);
+  fixed_.drop_from(frame);
   report.source = PoseSource::Initialising;
   {
     const auto stage = state_.machine.stage(stages::kGuided);
@@ -269,6 +271,7 @@ void NextFrontEnd<P>::locate(TrackedFrame<P>& frame, FrameReport& report) {
     T_predicted = prediction_.of(frame);
   }
   align_features<P>(state_, frame, T_predicted);
+  fixed_.drop_from(frame);
   std::optional<Pose<P>> pose =
       track_landmarks(state_, inertial_, random_, T_predicted, frame, report);
   if (!pose) pose = pose_by_prediction(frame, report);

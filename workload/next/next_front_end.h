@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "workload/levio/geometry/sampling.h"
+#include "workload/next/fixed_in_view.h"
 #include "workload/next/initial_path.h"
 #include "workload/next/loop/loop_part.h"
 #include "workload/next/motion_record.h"
@@ -65,6 +66,7 @@ class NextFrontEnd : public FrontEnd<P> {
   Prediction<P> prediction_;
   levio::ShiftRegister<P> random_;   ///< of both estimators
   std::optional<LoopPart<P>> loop_;  ///< if loops are closed
+  FixedInView<P> fixed_;
   InitialPath<P> path_;              ///< frames before the end of the alignment
   float settling_ = 0;               ///< time since its alignment, s
   typename P::U32 sum_;              ///< over the features of the frame before

@@ -84,6 +84,15 @@ struct RestOptions {
   float accel_error = 1.5f;  ///< difference from gravity: 0.1 g of offset, 5 % of scale [m/s²]
 };
 
+/// When `next` takes a part of the picture for one that moves with the camera
+/// (next/fixed_in_view.h).
+struct FixedPartOptions {
+  int cell = 8;             ///< side of the cells in which evidence is kept [px]
+  int evidence = 4;         ///< matches of a cell that stayed, less those that moved
+  float turned_px = 2;      ///< least motion that the rotation alone gives a match that counts [px]
+  float stayed_px = 0.25f;  ///< motion below which it has stayed: patches agree within a tenth [px]
+};
+
 /// Limits beyond which the odometry calls its map unreliable or lost (odometry/map_health.h).
 struct HealthOptions {
   /// Mean square of the whitened residuals: 4 is twice the assumed noise. The assumed IMU noise is
@@ -132,6 +141,7 @@ struct Profile {
   PatchAlignmentOptions patches;  ///< alignment of features to patches of the last keyframe
   RecoveryOptions recovery;
   RestOptions rest;
+  FixedPartOptions fixed;
   HealthOptions health;
   AlignmentOptions alignment;  ///< of a map that begins in motion; needs the joint optimiser
   /// Parallax between keyframes before the alignment, as a share of keyframe_parallax …
