@@ -1,5 +1,8 @@
 #include "workload/next/next_front_end.h"
 
+#include <cstdio>
+#include <cstdlib>
+
 #include "workload/next/feature_alignment.h"
 #include "workload/next/guided_tracking.h"
 #include "workload/next/motion_record.h"
@@ -24,6 +27,7 @@ NextFrontEnd<P>::NextFrontEnd(const Profile& profile, const Rig& rig, work::Mach
       prediction_(state_, inertial_, map_, keyframe_memory),
       random_(profile.sampling_seed),
       fixed_(state_, inertial_, keyframe_memory),
+      own_motion_(state_, inertial_, keyframe_memory),
       path_(state_, inertial_, keyframe_memory, profile.frames_that_wait(rig.frame_rate)) {
   if (profile.loop.enabled) loop_.emplace(state_, loop_memory);
 }
@@ -69,6 +73,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
       if (report.keyframe) insert_keyframe<P>(state_, frame, any_depth());
     }
   }
+  own_motion_.end_frame(report.keyframe);
   if (initialises() || !path_.empty()) path_.remember();
   prediction_.remember(frame, report);
   if (initialises())
@@ -77,6 +82,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   if (initialises()) report.state = static_cast<int>(PoseState::Initialising);
   if (inertial_.rest() || images_rest()) report.at_rest = 1;
   rested_ = report.source == PoseSource::First;
+  if (std::getenv("H2DBG")) std::fprintf(stderr, "own   frame %u src %d kf %d wm %d inl %d fm %d lm %d al %d conv %d p %.3f %.3f %.3f\n", state_.frame_number, (int)report.source, report.keyframe, report.world_matches, report.inliers, report.frame_matches, report.landmarks, map_.aligned, map_.converged, (double)report.p_world_camera[0], (double)report.p_world_camera[1], (double)report.p_world_camera[2]);
   if (loop_) loop_->correct(frame, frame.dt, report);
   return report;
 }
@@ -251,6 +257,7 @@ void NextFrontEnd<P>::follow(TrackedFrame<P>& frame, FrameReport& report) {
   match_last_keyframe(frame);
   align_features<P>(state_, frame, std::nullopt);
   fixed_.drop_from(frame);
+  own_motion_.drop_from(frame);
   report.source = PoseSource::Initialising;
   {
     const auto stage = state_.machine.stage(stages::kGuided);
@@ -272,6 +279,7 @@ void NextFrontEnd<P>::locate(TrackedFrame<P>& frame, FrameReport& report) {
   }
   align_features<P>(state_, frame, T_predicted);
   fixed_.drop_from(frame);
+  own_motion_.drop_from(frame);
   std::optional<Pose<P>> pose =
       track_landmarks(state_, inertial_, random_, T_predicted, frame, report);
   if (!pose) pose = pose_by_prediction(frame, report);

@@ -9,6 +9,7 @@
 #include "workload/next/initial_path.h"
 #include "workload/next/loop/loop_part.h"
 #include "workload/next/motion_record.h"
+#include "workload/next/own_motion.h"
 #include "workload/next/prediction.h"
 #include "workload/vio/front_end.h"
 #include "workload/vio/front_end_state.h"
@@ -67,6 +68,7 @@ class NextFrontEnd : public FrontEnd<P> {
   levio::ShiftRegister<P> random_;   ///< of both estimators
   std::optional<LoopPart<P>> loop_;  ///< if loops are closed
   FixedInView<P> fixed_;
+  OwnMotion<P> own_motion_;
   InitialPath<P> path_;              ///< frames before the end of the alignment
   float settling_ = 0;               ///< time since its alignment, s
   typename P::U32 sum_;              ///< over the features of the frame before

@@ -93,6 +93,16 @@ struct FixedPartOptions {
   float stayed_px = 0.25f;  ///< motion below which it has stayed: patches agree within a tenth [px]
 };
 
+/// When `next` takes a match for one of something that moves by itself (next/own_motion.h).
+struct OwnMotionOptions {
+  int pairs = 24;            ///< of matches that are tried: of 40 % wrong ones a third are right
+  int stride = 7;            ///< between their partners, without a factor in common with pairs
+  float agrees_px = 1;       ///< distance below which a match agrees with a translation [px]
+  float disagrees_px = 2;    ///< distance from which on it has moved by itself [px]
+  int cell = 8;              ///< side of the cells in which neighbours are taken for the same [px]
+  int keyframes = 4;         ///< for which a feature that moved by itself is remembered
+};
+
 /// Limits beyond which the odometry calls its map unreliable or lost (odometry/map_health.h).
 struct HealthOptions {
   /// Mean square of the whitened residuals: 4 is twice the assumed noise. The assumed IMU noise is
@@ -142,6 +152,7 @@ struct Profile {
   RecoveryOptions recovery;
   RestOptions rest;
   FixedPartOptions fixed;
+  OwnMotionOptions own_motion;
   HealthOptions health;
   AlignmentOptions alignment;  ///< of a map that begins in motion; needs the joint optimiser
   /// Parallax between keyframes before the alignment, as a share of keyframe_parallax …
