@@ -153,8 +153,8 @@ void move_object(const DisturbedPicture& p) {
   constexpr double kPeriod = 3;  // [s]
   const double height = static_cast<double>(p.pixels.size()) / p.width;
   const double side = std::sqrt(fraction(p.value) * height * p.width);
-  const double angle = 2e-9 * std::numbers::pi / kPeriod *
-                       static_cast<double>(p.time.t_ns - p.time.begin_ns);
+  const double angle =
+      2e-9 * std::numbers::pi / kPeriod * static_cast<double>(p.time.t_ns - p.time.begin_ns);
   const auto first = [&](double middle, double of) {
     return std::lround(middle + height / 4 * of - side / 2);
   };

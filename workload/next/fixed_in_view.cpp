@@ -1,35 +1,17 @@
 #include "workload/next/fixed_in_view.h"
 
-#include <algorithm>
-
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {
-namespace {
-
-int cells(int side, int cell) { return (side + cell - 1) / cell; }
-
-}  // namespace
 
 template <class P>
 FixedInView<P>::FixedInView(const FrontEndState<P>& state, const InertialPart<P>& inertial,
                             work::Arena& memory)
-    : state_(state),
-      inertial_(inertial),
-      columns_(cells(state.rig.width, state.profile.fixed.cell)) {
-  const int n = columns_ * cells(state.rig.height, state.profile.fixed.cell);
-  evidence_ = Bytes(
-      memory.alloc<typename P::template Span<typename P::Byte>>("evidence of fixed parts", n)
-          .data(),
-      n);
-  for (int i = 0; i < n; ++i) evidence_[i] = work::narrow<typename P::Byte>(I32(0));
-}
-
-template <class P>
-typename P::I32 FixedInView<P>::cell_of(const Frame<P>& frame, I32 feature) const {
-  const int size = state_.profile.fixed.cell * state_.profile.extractor.subpixel_steps;
-  const I32 x = frame.features.list.x[feature], y = frame.features.list.y[feature];
-  return y / I32(size) * I32(columns_) + x / I32(size);
+    : state_(state), inertial_(inertial), cells_(state, state.profile.fixed.cell) {
+  const int n = cells_.count();
+  using Span = typename P::template Span<Byte>;
+  evidence_ = Bytes(memory.alloc<Span>("evidence of fixed parts", n).data(), n);
+  for (int i : P::range(0, n)) evidence_[i] = work::narrow<Byte>(I32(0));
 }
 
 /// Whether the match stayed on its pixel, if the rotation would have moved it far enough.
@@ -54,7 +36,6 @@ typename FixedInView<P>::Verdict FixedInView<P>::verdict_on(const Frame<P>& fram
 
 template <class P>
 void FixedInView<P>::take_evidence(const Frame<P>& frame) {
-  using Byte = typename P::Byte;
   const typename P::Function function("take_evidence");
   const FixedPartOptions& limits = state_.profile.fixed;
   const Mat3<P> R = transpose(inertial_.motion_since_keyframe().R);
@@ -65,7 +46,7 @@ void FixedInView<P>::take_evidence(const Frame<P>& frame) {
   for (int i : P::range(0, frame.matches.list.count)) {
     const Verdict verdict = verdict_on(frame, i, R);
     if (verdict == Verdict::Nothing) continue;
-    const I32 cell = cell_of(frame, I32(frame.matches.list.query[i]));
+    const I32 cell = cells_.of(frame.features.list, I32(frame.matches.list.query[i]));
     const I32 before = evidence_[cell];
     const I32 now = verdict == Verdict::Stayed ? before + I32(1) : before - I32(1);
     if (now < I32(0) || now > I32(2 * limits.evidence)) continue;
@@ -77,27 +58,15 @@ void FixedInView<P>::take_evidence(const Frame<P>& frame) {
 
 template <class P>
 void FixedInView<P>::drop_from(Frame<P>& frame) {
-  using U16 = typename P::U16;
   if (!state_.profile.use_imu) return;
   const auto stage = state_.machine.stage(stages::kGuided);
   const typename P::Function function("drop_fixed");
   take_evidence(frame);
   if (fixed_ == I32(0)) return;
-  MatchList<P>& matches = frame.matches.list;
-  int kept = 0;
-  for (int i : P::range(0, matches.count)) {
-    const I32 feature = matches.query[i], old = matches.reference[i];
-    if (I32(evidence_[cell_of(frame, feature)]) >= I32(state_.profile.fixed.evidence)) {
-      const I32 landmark = frame.matches.landmarks[old];
-      if (landmark != I32(kNoLandmark)) state_.graph_in_l2.retire_landmark(landmark);
-      continue;
-    }
-    matches.query[kept] = work::narrow<U16>(feature);
-    matches.reference[kept] = work::narrow<U16>(old);
-    matches.distance[kept] = work::narrow<U16>(I32(matches.distance[i]));
-    ++kept;
-  }
-  matches.count = kept;
+  drop_foreign(state_, frame, [&](int i) {
+    const I32 cell = cells_.of(frame.features.list, I32(frame.matches.list.query[i]));
+    return bool(I32(evidence_[cell]) >= I32(state_.profile.fixed.evidence));
+  });
 }
 
 template class FixedInView<work::Native>;

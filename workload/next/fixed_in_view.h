@@ -10,7 +10,7 @@
 // Left out: what moves by itself; parts that only translation would tell.
 #pragma once
 
-#include "workload/vio/frame.h"
+#include "workload/next/foreign_matches.h"
 #include "workload/vio/inertial_part.h"
 
 namespace leviosim::vio {
@@ -29,17 +29,17 @@ class FixedInView {
  private:
   using F = typename P::F32;
   using I32 = typename P::I32;
-  using Bytes = typename P::template L2Span<typename P::Byte>;
+  using Byte = typename P::Byte;
+  using Bytes = typename P::template L2Span<Byte>;
 
   enum class Verdict : std::uint8_t { Nothing, Stayed, Moved };
 
-  I32 cell_of(const Frame<P>& frame, I32 feature) const;
   Verdict verdict_on(const Frame<P>& frame, int match, const Mat3<P>& R_camera_keyframe) const;
   void take_evidence(const Frame<P>& frame);
 
   const FrontEndState<P>& state_;
   const InertialPart<P>& inertial_;
-  int columns_;
+  PictureCells<P> cells_;
   Bytes evidence_;  ///< of each cell, from 0 to twice the limit
   I32 fixed_ = 0;   ///< cells that have reached the limit
 };

@@ -1,8 +1,5 @@
 #include "workload/next/next_front_end.h"
 
-#include <cstdio>
-#include <cstdlib>
-
 #include "workload/next/feature_alignment.h"
 #include "workload/next/guided_tracking.h"
 #include "workload/next/motion_record.h"
@@ -82,7 +79,6 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   if (initialises()) report.state = static_cast<int>(PoseState::Initialising);
   if (inertial_.rest() || images_rest()) report.at_rest = 1;
   rested_ = report.source == PoseSource::First;
-  if (std::getenv("H2DBG")) std::fprintf(stderr, "own   frame %u src %d kf %d wm %d inl %d fm %d lm %d al %d conv %d p %.3f %.3f %.3f\n", state_.frame_number, (int)report.source, report.keyframe, report.world_matches, report.inliers, report.frame_matches, report.landmarks, map_.aligned, map_.converged, (double)report.p_world_camera[0], (double)report.p_world_camera[1], (double)report.p_world_camera[2]);
   if (loop_) loop_->correct(frame, frame.dt, report);
   return report;
 }

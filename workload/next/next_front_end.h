@@ -69,9 +69,9 @@ class NextFrontEnd : public FrontEnd<P> {
   std::optional<LoopPart<P>> loop_;  ///< if loops are closed
   FixedInView<P> fixed_;
   OwnMotion<P> own_motion_;
-  InitialPath<P> path_;              ///< frames before the end of the alignment
-  float settling_ = 0;               ///< time since its alignment, s
-  typename P::U32 sum_;              ///< over the features of the frame before
+  InitialPath<P> path_;  ///< frames before the end of the alignment
+  float settling_ = 0;   ///< time since its alignment, s
+  typename P::U32 sum_;  ///< over the features of the frame before
   bool still_ = false;   ///< the images say that the camera has not moved since the keyframe
   bool rests_ = false;   ///< … and has not turned either
   bool rested_ = false;  ///< the frame before began a map, or rested where it began

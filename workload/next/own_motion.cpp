@@ -1,18 +1,11 @@
 #include "workload/next/own_motion.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "workload/vio/parallax.h"
 #include "workload/vio/stages.h"
 
 namespace leviosim::vio {
-namespace {
-
-int cells_along(int side, int cell) { return (side + cell - 1) / cell; }
-
-}  // namespace
-
 /// How far the matches moved, the rotation undone; x and y of each, normalised.
 template <class P>
 struct OwnMotion<P>::Flow {
@@ -41,21 +34,11 @@ struct OwnMotion<P>::Flow {
 template <class P>
 OwnMotion<P>::OwnMotion(const FrontEndState<P>& state, const InertialPart<P>& inertial,
                         work::Arena& memory)
-    : state_(state),
-      inertial_(inertial),
-      columns_(cells_along(state.rig.width, state.profile.own_motion.cell)),
-      cells_(columns_ * cells_along(state.rig.height, state.profile.own_motion.cell)) {
+    : state_(state), inertial_(inertial), cells_(state, state.profile.own_motion.cell) {
   const int n = state.keyframe.features.list.capacity;
   known_ = Bytes(memory.alloc<Flags>("features that move by themselves", n).data(), n);
   next_ = Bytes(memory.alloc<Flags>("the same of the frame", n).data(), n);
-  end_frame(true);
-}
-
-template <class P>
-typename P::I32 OwnMotion<P>::cell_of(const Frame<P>& frame, int feature) const {
-  const int size = state_.profile.own_motion.cell * state_.profile.extractor.subpixel_steps;
-  const I32 x = frame.features.list.x[feature], y = frame.features.list.y[feature];
-  return y / I32(size) * I32(columns_) + x / I32(size);
+  for (int i : P::range(0, n)) known_[i] = work::narrow<Byte>(I32(0));
 }
 
 template <class P>
@@ -66,13 +49,16 @@ typename OwnMotion<P>::Flow OwnMotion<P>::flow_of(const Frame<P>& frame) const {
   const Flow flow{local.alloc<Floats>("matches before", 2 * n),
                   local.alloc<Floats>("motion of matches", 2 * n), n};
   const Mat3<P> R = transpose(inertial_.motion_since_keyframe().R);
-  for (int i : P::range(0, n)) {
-    const auto [seen, moved] = parallax_of(state_, frame, i, R);
-    flow.from[2 * i] = seen.x - moved.x;
-    flow.from[2 * i + 1] = seen.y - moved.y;
-    flow.moved[2 * i] = moved.x;
-    flow.moved[2 * i + 1] = moved.y;
-  }
+  state_.machine.fork("motion of matches", [&](work::Core& core) {
+    const auto [begin, end] = core.share(n);
+    for (int i : P::range(begin, end)) {
+      const auto [seen, moved] = parallax_of(state_, frame, i, R);
+      flow.from[2 * i] = seen.x - moved.x;
+      flow.from[2 * i + 1] = seen.y - moved.y;
+      flow.moved[2 * i] = moved.x;
+      flow.moved[2 * i + 1] = moved.y;
+    }
+  });
   return flow;
 }
 
@@ -119,18 +105,20 @@ void OwnMotion<P>::judge(const Flow& flow, const Frame<P>& frame, Flags moves) {
   const OwnMotionOptions& options = state_.profile.own_motion;
   const MatchList<P>& matches = frame.matches.list;
   const auto zero = work::narrow<Byte>(I32(0));
-  const auto most = local.alloc<typename P::template Span<I32>>("moving less still", cells_);
-  const auto longest = local.alloc<Flags>("for how many keyframes", cells_);
-  for (int c : P::range(0, cells_)) {
+  const auto most =
+      local.alloc<typename P::template Span<I32>>("moving less still", cells_.count());
+  const auto longest = local.alloc<Flags>("for how many keyframes", cells_.count());
+  for (int c : P::range(0, cells_.count())) {
     most[c] = I32(0);
     longest[c] = zero;
   }
+  const auto cell_of = [&](I32 feature) { return cells_.of(frame.features.list, feature); };
   const float limit = options.disagrees_px / state_.rig.camera.fx;
   const Vec3<P> t = most_agreed(flow);
   for (int i : P::range(0, flow.n)) {
     const I32 known = known_[I32(matches.reference[i])];
     const bool away = bool(!(flow.distance_sq(i, t) < F(limit * limit)));
-    const I32 cell = cell_of(frame, work::value(I32(matches.query[i])));
+    const I32 cell = cell_of(I32(matches.query[i]));
     const bool moving = away || bool(known > I32(0));
     most[cell] = I32(most[cell]) + I32(moving ? 1 : -1);
     const I32 left = away ? I32(options.keyframes) : known - I32(1);
@@ -138,20 +126,17 @@ void OwnMotion<P>::judge(const Flow& flow, const Frame<P>& frame, Flags moves) {
     moves[i] = work::narrow<Byte>(I32(moving ? 1 : 0));
   }
   for (int i : P::range(0, frame.features.list.count)) {
-    const I32 cell = cell_of(frame, i);
+    const I32 cell = cell_of(I32(i));
     const bool moving = bool(I32(most[cell]) > I32(0));
     next_[i] = moving ? work::narrow<Byte>(I32(longest[cell])) : zero;
   }
   for (int i : P::range(0, flow.n))
-    if (I32(most[cell_of(frame, work::value(I32(matches.query[i])))]) > I32(0))
-      moves[i] = work::narrow<Byte>(I32(1));
+    if (I32(most[cell_of(I32(matches.query[i]))]) > I32(0)) moves[i] = work::narrow<Byte>(I32(1));
 }
 
 template <class P>
 void OwnMotion<P>::drop_from(Frame<P>& frame) {
-  using U16 = typename P::U16;
-  MatchList<P>& matches = frame.matches.list;
-  const int n = matches.count;
+  const int n = frame.matches.list.count;
   if (!state_.profile.use_imu || n < state_.profile.min_frame_matches) return;
   work::Arena& local = state_.machine.local();
   const work::Arena::Frame memory(local);
@@ -160,20 +145,7 @@ void OwnMotion<P>::drop_from(Frame<P>& frame) {
   const auto moves = local.alloc<Flags>("matches that move by themselves", n);
   judge(flow_of(frame), frame, moves);
   judged_ = true;
-  int kept = 0;
-  for (int i : P::range(0, n)) {
-    const I32 feature = matches.query[i], old = matches.reference[i];
-    if (I32(moves[i]) != I32(0)) {
-      const I32 landmark = frame.matches.landmarks[old];
-      if (landmark != I32(kNoLandmark)) state_.graph_in_l2.retire_landmark(landmark);
-      continue;
-    }
-    matches.query[kept] = work::narrow<U16>(feature);
-    matches.reference[kept] = work::narrow<U16>(old);
-    matches.distance[kept] = work::narrow<U16>(I32(matches.distance[i]));
-    ++kept;
-  }
-  matches.count = kept;
+  drop_foreign(state_, frame, [&](int i) { return bool(I32(moves[i]) != I32(0)); });
 }
 
 template <class P>
@@ -181,7 +153,8 @@ void OwnMotion<P>::end_frame(bool keyframe) {
   const bool judged = std::exchange(judged_, false);
   if (!keyframe) return;
   if (judged) return std::swap(known_, next_);
-  for (int i = 0; i < known_.size(); ++i) known_[i] = work::narrow<Byte>(I32(0));
+  const auto stage = state_.machine.stage(stages::kGuided);
+  for (int i : P::range(0, known_.size())) known_[i] = work::narrow<Byte>(I32(0));
 }
 
 template class OwnMotion<work::Native>;

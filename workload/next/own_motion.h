@@ -5,14 +5,14 @@
 // of the picture give such points, and the one that most matches agree with is kept. What disagrees
 // with it by pixels is not of the world.
 //
-// What moves by itself moves along those lines, too, at times. So features that were seen to do so
-// are remembered for some keyframes, and with them features in the same cell of the picture where
-// they are the most.
+// What moves by itself moves along those lines, too, at times. So where most matches of a cell of the
+// picture were seen to move by themselves, all of its features are held for such, for some
+// keyframes.
 //
 // Left out: the noise of the gyro; what never moves across the lines.
 #pragma once
 
-#include "workload/vio/frame.h"
+#include "workload/next/foreign_matches.h"
 #include "workload/vio/inertial_part.h"
 
 namespace leviosim::vio {
@@ -41,11 +41,10 @@ class OwnMotion {
   Flow flow_of(const Frame<P>& frame) const;
   Vec3<P> most_agreed(const Flow& flow) const;
   void judge(const Flow& flow, const Frame<P>& frame, Flags moves);
-  I32 cell_of(const Frame<P>& frame, int feature) const;
 
   const FrontEndState<P>& state_;
   const InertialPart<P>& inertial_;
-  int columns_, cells_;
+  PictureCells<P> cells_;
   Bytes known_;  ///< for how many keyframes a feature of the last one is held for moving by itself
   Bytes next_;   ///< the same of the features of the present frame, if it is
   bool judged_ = false;  ///< the present frame

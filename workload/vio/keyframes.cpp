@@ -303,11 +303,11 @@ std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>& state, const
   return inverse * b;
 }
 
-#define LEVIOSIM_INSTANTIATE(P)                                                                  \
-  template Parallax<P> parallax_of(const FrontEndState<P>&, const Frame<P>&, int, const Mat3<P>&);\
-  template P::F32 total_parallax(const FrontEndState<P>&, const InertialPart<P>&,                \
-                                 const Frame<P>&);                                               \
-  template std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>&, const Frame<P>&, \
+#define LEVIOSIM_INSTANTIATE(P)                                                                    \
+  template Parallax<P> parallax_of(const FrontEndState<P>&, const Frame<P>&, int, const Mat3<P>&); \
+  template P::F32 total_parallax(const FrontEndState<P>&, const InertialPart<P>&,                  \
+                                 const Frame<P>&);                                                 \
+  template std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>&, const Frame<P>&,   \
                                                        const Mat3<P>&, float);
 LEVIOSIM_INSTANTIATE(work::Native)
 LEVIOSIM_INSTANTIATE(work::Counting)

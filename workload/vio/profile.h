@@ -95,12 +95,12 @@ struct FixedPartOptions {
 
 /// When `next` takes a match for one of something that moves by itself (next/own_motion.h).
 struct OwnMotionOptions {
-  int pairs = 24;            ///< of matches that are tried: of 40 % wrong ones a third are right
-  int stride = 7;            ///< between their partners, without a factor in common with pairs
-  float agrees_px = 1;       ///< distance below which a match agrees with a translation [px]
-  float disagrees_px = 2;    ///< distance from which on it has moved by itself [px]
-  int cell = 8;              ///< side of the cells in which neighbours are taken for the same [px]
-  int keyframes = 4;         ///< for which a feature that moved by itself is remembered
+  int pairs = 24;          ///< of matches that are tried: of 40 % wrong ones a third are right
+  int stride = 7;          ///< between their partners, without a factor in common with pairs
+  float agrees_px = 1;     ///< distance below which a match agrees with a translation [px]
+  float disagrees_px = 2;  ///< distance from which on it has moved by itself [px]
+  int cell = 16;           ///< side of the cells in which neighbours are taken for the same [px]
+  int keyframes = 4;       ///< for which a feature that moved by itself is remembered
 };
 
 /// Limits beyond which the odometry calls its map unreliable or lost (odometry/map_health.h).
