@@ -44,6 +44,10 @@ constexpr std::array kCases{
          0.8,
          false,
          {0.35f, 9.9f}},
+    Case{"a patch moves with the camera",
+         [](ShortFlight& f) { disturb_pictures(f, "occlusion-textured=30"); }, 0.1, false},
+    Case{"an object moves by itself",
+         [](ShortFlight& f) { disturb_pictures(f, "moving-object=12"); }, 0.1, false},
     Case{"no IMU for half a second", [](ShortFlight& f) { cut_imu(f, 100, 110); }, 0.2, false},
 };
 

@@ -110,6 +110,15 @@ TEST(Disturbance, IsOfThePicture) {
   EXPECT_EQ(black.back(), 0);
   EXPECT_EQ(picture("occlusion-textured=30", 0), picture("occlusion-textured=30", 7)) << "static";
   EXPECT_NE(picture("occlusion-textured=30", 0), picture("none", 0));
+  const auto object = picture("moving-object=12", 0), later = picture("moving-object=12", 0.75);
+  const auto covered = [](const auto& pixels) {
+    return std::count_if(pixels.begin(), pixels.end(), [](auto pixel) { return pixel != 100; });
+  };
+  EXPECT_NEAR(static_cast<double>(covered(object)), 0.12 * 160 * 120, 0.01 * 160 * 120);
+  EXPECT_EQ(covered(object), covered(later));
+  for (int i = 0; i < 30; ++i)  // a quarter round: from the right of the middle to below it
+    EXPECT_EQ(object[static_cast<std::size_t>(60 * 160 + 110 + i - 15)],
+              later[static_cast<std::size_t>(90 * 160 + 80 + i - 15)]);
 }
 
 TEST(Disturbance, ReachesPicturesThatAreRead) {

@@ -10,10 +10,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "sim/work/machine.h"
 #include "traces/datasets/camera_model.h"
+#include "traces/datasets/disturbance.h"
 #include "traces/datasets/euroc_sensors.h"
 #include "traces/datasets/image_preparation.h"
 #include "traces/synthesis/imu_synthesis.h"
@@ -172,6 +174,15 @@ inline void darken(ShortFlight& flight, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i)
     for (std::uint8_t& pixel : flight.frames[i].pixels)
       pixel = static_cast<std::uint8_t>(pixel / 40);
+}
+
+/// As disturbance.h has it.
+inline void disturb_pictures(ShortFlight& flight, std::string_view disturbance) {
+  const traces::Disturbance parsed = traces::parse_disturbance(disturbance);
+  for (ShortFlight::Frame& frame : flight.frames)
+    traces::disturb_picture(parsed,
+                            {frame.t_ns, flight.frames.front().t_ns, flight.frames.back().t_ns},
+                            flight.rig.width, frame.pixels);
 }
 
 /// The camera delivers its last picture again and again.

@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "sim/base/error.h"
@@ -138,12 +139,31 @@ void cover_black(const DisturbedPicture& p) {
   cover(p, [](std::size_t, std::size_t) { return std::uint8_t{0}; });
 }
 
-/// With cells of random grey, which have corners.
-void cover_textured(const DisturbedPicture& p) {
+/// Cells of random grey, which have corners.
+std::uint8_t texture(std::size_t x, std::size_t y) {
   constexpr std::size_t kCell = 5;  // [px]
-  cover(p, [](std::size_t x, std::size_t y) {
-    return static_cast<std::uint8_t>(derive_seed(x / kCell, y / kCell));
-  });
+  return static_cast<std::uint8_t>(derive_seed(x / kCell, y / kCell));
+}
+
+void cover_textured(const DisturbedPicture& p) { cover(p, texture); }
+
+/// A square that goes round the middle of the picture every three seconds, a quarter of its height
+/// away, whatever the camera does.
+void move_object(const DisturbedPicture& p) {
+  constexpr double kPeriod = 3;  // [s]
+  const double height = static_cast<double>(p.pixels.size()) / p.width;
+  const double side = std::sqrt(fraction(p.value) * height * p.width);
+  const double angle =
+      2e-9 * std::numbers::pi / kPeriod * static_cast<double>(p.time.t_ns - p.time.begin_ns);
+  const auto first = [&](double middle, double of) {
+    return std::lround(middle + height / 4 * of - side / 2);
+  };
+  const long left = first(p.width / 2.0, std::cos(angle)), top = first(height / 2, std::sin(angle));
+  const long size = std::lround(side);
+  for (long y = std::max(0L, top); y < std::min(std::lround(height), top + size); ++y)
+    for (long x = std::max(0L, left); x < std::min<long>(p.width, left + size); ++x)
+      p.pixels[static_cast<std::size_t>(y * p.width + x)] =
+          texture(static_cast<std::size_t>(x - left), static_cast<std::size_t>(y - top));
 }
 
 }  // namespace
@@ -173,6 +193,7 @@ constexpr std::array kKinds{
     DisturbanceKind{"noise", "grey levels", 0, 100, false, nullptr, add_noise},
     DisturbanceKind{"occlusion-black", "% of the rows", 0, 100, false, nullptr, cover_black},
     DisturbanceKind{"occlusion-textured", "% of the rows", 0, 100, false, nullptr, cover_textured},
+    DisturbanceKind{"moving-object", "% of the picture", 0, 100, false, nullptr, move_object},
 };
 
 constexpr std::string_view kNone = "none";

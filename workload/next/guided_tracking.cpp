@@ -286,17 +286,10 @@ void predict_landmarks(const FrontEndState<P>& state, const Frame<P>& frame,
 template <class P>
 void drop_disagreeing(Flags<P> verdicts, MatchList<P>& matches) {
   using I32 = typename P::I32;
-  using U16 = typename P::U16;
   const typename P::Function function("drop_disagreeing");
-  int kept = 0;
-  for (int i : P::range(0, matches.count)) {
-    if (I32(verdicts[i]) == I32(static_cast<int>(PatchVerdict::Disagrees))) continue;
-    matches.query[kept] = work::narrow<U16>(I32(matches.query[i]));
-    matches.reference[kept] = work::narrow<U16>(I32(matches.reference[i]));
-    matches.distance[kept] = work::narrow<U16>(I32(matches.distance[i]));
-    ++kept;
-  }
-  matches.count = kept;
+  keep_matches(matches, [&](int i) {
+    return bool(I32(verdicts[i]) != I32(static_cast<int>(PatchVerdict::Disagrees)));
+  });
 }
 
 /// The descriptor of the keyframe's feature `old` becomes that of feature `at`.

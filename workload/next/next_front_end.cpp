@@ -23,6 +23,8 @@ NextFrontEnd<P>::NextFrontEnd(const Profile& profile, const Rig& rig, work::Mach
       inertial_(state_),
       prediction_(state_, inertial_, map_, keyframe_memory),
       random_(profile.sampling_seed),
+      fixed_(state_, inertial_, keyframe_memory),
+      own_motion_(state_, inertial_, keyframe_memory),
       path_(state_, inertial_, keyframe_memory, profile.frames_that_wait(rig.frame_rate)) {
   if (profile.loop.enabled) loop_.emplace(state_, loop_memory);
 }
@@ -68,6 +70,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
       if (report.keyframe) insert_keyframe<P>(state_, frame, any_depth());
     }
   }
+  own_motion_.end_frame(report.keyframe);
   if (initialises() || !path_.empty()) path_.remember();
   prediction_.remember(frame, report);
   if (initialises())
@@ -249,6 +252,8 @@ void NextFrontEnd<P>::follow(TrackedFrame<P>& frame, FrameReport& report) {
   frame.T_world_last = prediction_.last_pose();
   match_last_keyframe(frame);
   align_features<P>(state_, frame, std::nullopt);
+  fixed_.drop_from(frame);
+  own_motion_.drop_from(frame);
   report.source = PoseSource::Initialising;
   {
     const auto stage = state_.machine.stage(stages::kGuided);
@@ -269,6 +274,8 @@ void NextFrontEnd<P>::locate(TrackedFrame<P>& frame, FrameReport& report) {
     T_predicted = prediction_.of(frame);
   }
   align_features<P>(state_, frame, T_predicted);
+  fixed_.drop_from(frame);
+  own_motion_.drop_from(frame);
   std::optional<Pose<P>> pose =
       track_landmarks(state_, inertial_, random_, T_predicted, frame, report);
   if (!pose) pose = pose_by_prediction(frame, report);

@@ -5,9 +5,11 @@
 #include <optional>
 
 #include "workload/levio/geometry/sampling.h"
+#include "workload/next/fixed_in_view.h"
 #include "workload/next/initial_path.h"
 #include "workload/next/loop/loop_part.h"
 #include "workload/next/motion_record.h"
+#include "workload/next/own_motion.h"
 #include "workload/next/prediction.h"
 #include "workload/vio/front_end.h"
 #include "workload/vio/front_end_state.h"
@@ -65,9 +67,11 @@ class NextFrontEnd : public FrontEnd<P> {
   Prediction<P> prediction_;
   levio::ShiftRegister<P> random_;   ///< of both estimators
   std::optional<LoopPart<P>> loop_;  ///< if loops are closed
-  InitialPath<P> path_;              ///< frames before the end of the alignment
-  float settling_ = 0;               ///< time since its alignment, s
-  typename P::U32 sum_;              ///< over the features of the frame before
+  FixedInView<P> fixed_;
+  OwnMotion<P> own_motion_;
+  InitialPath<P> path_;  ///< frames before the end of the alignment
+  float settling_ = 0;   ///< time since its alignment, s
+  typename P::U32 sum_;  ///< over the features of the frame before
   bool still_ = false;   ///< the images say that the camera has not moved since the keyframe
   bool rests_ = false;   ///< … and has not turned either
   bool rested_ = false;  ///< the frame before began a map, or rested where it began

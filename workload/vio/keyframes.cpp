@@ -256,13 +256,8 @@ Mat3<P> rotation_to_undo(const FrontEndState<P>& state, const InertialPart<P>& i
   return transpose(frame.T_world_camera.R) * last.T_world_camera.R;
 }
 
-template <class P>
-struct Parallax {
-  Vec2<P> seen;  ///< normalised
-  Vec2<P> moved;
-};
+}  // namespace
 
-/// Of match i.
 template <class P>
 Parallax<P> parallax_of(const FrontEndState<P>& state, const Frame<P>& frame, int i,
                         const Mat3<P>& R_camera_keyframe) {
@@ -278,8 +273,6 @@ Parallax<P> parallax_of(const FrontEndState<P>& state, const Frame<P>& frame, in
   const F scale = F(1.0f) / turned.z;
   return {seen, {seen.x - turned.x * scale, seen.y - turned.y * scale}};
 }
-
-}  // namespace
 
 template <class P>
 typename P::F32 total_parallax(const FrontEndState<P>& state, const InertialPart<P>& inertial,
@@ -322,10 +315,11 @@ std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>& state, const
   return inverse * b;
 }
 
-#define LEVIOSIM_INSTANTIATE(P)                                                                  \
-  template P::F32 total_parallax(const FrontEndState<P>&, const InertialPart<P>&,                \
-                                 const Frame<P>&);                                               \
-  template std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>&, const Frame<P>&, \
+#define LEVIOSIM_INSTANTIATE(P)                                                                    \
+  template Parallax<P> parallax_of(const FrontEndState<P>&, const Frame<P>&, int, const Mat3<P>&); \
+  template P::F32 total_parallax(const FrontEndState<P>&, const InertialPart<P>&,                  \
+                                 const Frame<P>&);                                                 \
+  template std::optional<Vec3<P>> motion_over_distance(const FrontEndState<P>&, const Frame<P>&,   \
                                                        const Mat3<P>&, float);
 LEVIOSIM_INSTANTIATE(work::Native)
 LEVIOSIM_INSTANTIATE(work::Counting)

@@ -8,6 +8,18 @@
 
 namespace leviosim::vio {
 
+/// What is left of a match's motion since the last keyframe when a rotation is undone.
+template <class P>
+struct Parallax {
+  Vec2<P> seen;   ///< the feature in the present frame, normalised
+  Vec2<P> moved;  ///< likewise
+};
+
+/// Of match i. Works inside a stage.
+template <class P>
+Parallax<P> parallax_of(const FrontEndState<P>& state, const Frame<P>& frame, int i,
+                        const Mat3<P>& R_camera_keyframe);
+
 /// Sum over the matches with the last keyframe, in normalised coordinates. Parallax is what remains
 /// of the motion of the matches when the rotation since the keyframe is undone: the rotation that
 /// the gyro measured, for a wrong pose would look like parallax, and every frame after it would

@@ -84,6 +84,25 @@ struct RestOptions {
   float accel_error = 1.5f;  ///< difference from gravity: 0.1 g of offset, 5 % of scale [m/s²]
 };
 
+/// When `next` takes a part of the picture for one that moves with the camera
+/// (next/fixed_in_view.h).
+struct FixedPartOptions {
+  int cell = 8;             ///< side of the cells in which evidence is kept [px]
+  int evidence = 4;         ///< matches of a cell that stayed, less those that moved
+  float turned_px = 2;      ///< least motion that the rotation alone gives a match that counts [px]
+  float stayed_px = 0.25f;  ///< motion below which it has stayed: patches agree within a tenth [px]
+};
+
+/// When `next` takes a match for one of something that moves by itself (next/own_motion.h).
+struct OwnMotionOptions {
+  int pairs = 24;          ///< of matches that are tried: of 40 % wrong ones a third are right
+  int stride = 7;          ///< between their partners, without a factor in common with pairs
+  float agrees_px = 1;     ///< distance below which a match agrees with a translation [px]
+  float disagrees_px = 2;  ///< distance from which on it has moved by itself [px]
+  int cell = 16;           ///< side of the cells in which neighbours are taken for the same [px]
+  int keyframes = 4;       ///< for which a feature that moved by itself is remembered
+};
+
 /// Limits beyond which the odometry calls its map unreliable or lost (odometry/map_health.h).
 struct HealthOptions {
   /// Mean square of the whitened residuals: 4 is twice the assumed noise. The assumed IMU noise is
@@ -132,6 +151,8 @@ struct Profile {
   PatchAlignmentOptions patches;  ///< alignment of features to patches of the last keyframe
   RecoveryOptions recovery;
   RestOptions rest;
+  FixedPartOptions fixed;
+  OwnMotionOptions own_motion;
   HealthOptions health;
   AlignmentOptions alignment;  ///< of a map that begins in motion; needs the joint optimiser
   /// Parallax between keyframes before the alignment, as a share of keyframe_parallax …

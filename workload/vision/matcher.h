@@ -44,6 +44,22 @@ MatchList<P> alloc_matches(work::Machine& machine, int capacity,
   return matches_in<P>(work::alloc_either<P, typename P::U16>(machine, name, 3 * capacity));
 }
 
+/// Takes off the list what keeps(i) does not hold for. What is left keeps its order.
+template <class P, class Keeps>
+void keep_matches(MatchList<P>& matches, const Keeps& keeps) {
+  using I32 = typename P::I32;
+  using U16 = typename P::U16;
+  int kept = 0;
+  for (int i : P::range(0, matches.count)) {
+    if (!keeps(i)) continue;
+    matches.query[kept] = work::narrow<U16>(I32(matches.query[i]));
+    matches.reference[kept] = work::narrow<U16>(I32(matches.reference[i]));
+    matches.distance[kept] = work::narrow<U16>(I32(matches.distance[i]));
+    ++kept;
+  }
+  matches.count = kept;
+}
+
 struct MatcherOptions {
   int max_distance = 35;  ///< bits; a match is strictly closer (PARAMETERS.md#matching)
 };
