@@ -97,7 +97,7 @@ int Machine::workers_with(Bytes scratch) const {
       std::clamp<std::int64_t>(local_.free().count() / each.count(), 1, config_.cores));
 }
 
-void Machine::note_tile(std::string_view block, Bytes bytes, Bytes more) {
+void Machine::note_tile(std::string_view block, Bytes bytes) {
   const auto known = std::find_if(passages_.begin(), passages_.end(), [&](const Passage& p) {
     return p.stage == stage_ && p.block == block;
   });
@@ -105,7 +105,6 @@ void Machine::note_tile(std::string_view block, Bytes bytes, Bytes more) {
       known != passages_.end() ? *known : passages_.emplace_back(Passage{stage_, block});
   ++passage.tiles;
   passage.bytes += bytes;
-  passage.more += more;
 }
 
 void Machine::note_transfer(const Transfer& transfer) {

@@ -137,6 +137,7 @@ class Machine {
 
   /// DMA in the background. The host copies at once; on the chip the data are there after wait(),
   /// which every transfer needs in the same job.
+  /// @param more  of the bytes, what would not move if the block stayed in local memory
   class Ticket {
    public:
     Ticket() = default;
@@ -147,13 +148,13 @@ class Machine {
     std::int32_t number_ = -1;
   };
   template <class To, class From>
-  [[nodiscard]] Ticket start_copy_in(To to, From from) {
-    copy(inwards(), to, from, true);
+  [[nodiscard]] Ticket start_copy_in(To to, From from, Bytes more = Bytes(0)) {
+    copy(inwards(), to, from, true, more);
     return Ticket(background_transfers_++);
   }
   template <class To, class From>
-  [[nodiscard]] Ticket start_copy_out(To to, From from) {
-    copy(outwards(), to, from, true);
+  [[nodiscard]] Ticket start_copy_out(To to, From from, Bytes more = Bytes(0)) {
+    copy(outwards(), to, from, true, more);
     return Ticket(background_transfers_++);
   }
   void wait(Ticket ticket);
@@ -162,8 +163,7 @@ class Machine {
   Job take_job();
 
   /// Counts a tile of a block that passes through the local memory (tiles.h).
-  /// @param more  of the bytes, what would not have moved if the block stayed in local memory
-  void note_tile(std::string_view block, Bytes bytes, Bytes more);
+  void note_tile(std::string_view block, Bytes bytes);
   /// What has passed so far, in the order of its first tiles.
   const std::vector<Passage>& passages() const { return passages_; }
 
@@ -182,12 +182,12 @@ class Machine {
     return behind_is_external() ? Direction::L2ToExternal : Direction::L1ToL2;
   }
   template <class To, class From>
-  void copy(Direction direction, To to, From from, bool background) {
+  void copy(Direction direction, To to, From from, bool background, Bytes more = Bytes(0)) {
     const auto n = static_cast<std::size_t>(std::min(to.size(), from.size()));
     static_assert(sizeof(*to.data()) == sizeof(*from.data()));
     if (n > 0) std::memcpy(static_cast<void*>(to.data()), from.data(), n * sizeof(*to.data()));
     note_transfer(
-        {direction, Bytes(static_cast<std::int64_t>(n * sizeof(*to.data()))), background});
+        {direction, Bytes(static_cast<std::int64_t>(n * sizeof(*to.data()))), background, more});
   }
 
   void begin_stage(std::string_view name);

@@ -48,6 +48,7 @@ struct Transfer {
   Direction direction;
   Bytes bytes;
   bool background = false;
+  Bytes more{0};  ///< of these, what would not move if the block stayed in local memory
 };
 
 /// The master waits for a background transfer of the same job: number 0 is the first.
@@ -69,7 +70,6 @@ struct Passage {
   std::string_view stage, block;
   std::int64_t tiles = 0;
   Bytes bytes{0};
-  Bytes more{0};  ///< of these, what would not have moved if the block stayed in local memory
 };
 
 /// Highest occupation of a memory during a stage.

@@ -82,11 +82,11 @@ class TilesIn {
   }
   void fetch(Machine& machine, int i, const Tile& tile) {
     const int n = tile.items() * block_.each;
-    under_way_ =
-        machine.start_copy_in(view(i, tile), block_.in_l2.subspan(tile.first * block_.each, n));
     const Bytes bytes = block_.item() * tile.items();
-    machine.note_tile(block_.name, bytes,
-                      block_.again ? bytes : block_.item() * (tile.items() - tile.size()));
+    const Bytes more = block_.again ? bytes : block_.item() * (tile.items() - tile.size());
+    under_way_ = machine.start_copy_in(view(i, tile),
+                                       block_.in_l2.subspan(tile.first * block_.each, n), more);
+    machine.note_tile(block_.name, bytes);
   }
   void wait(Machine& machine) { machine.wait(under_way_); }
   Span view(int i, const Tile& tile) const {
@@ -120,10 +120,10 @@ class TilesOut {
   }
   /// Sends what next() gave, as far as it fits in `in_l2`.
   void send(Machine& machine, Span in_l2) {
-    under_way_[slot()] = machine.start_copy_out(in_l2, buffers_[slot()]);
-    is_under_way_[slot()] = true;
     const Bytes bytes(static_cast<std::int64_t>(sizeof(T)) * in_l2.size());
-    machine.note_tile(name_, bytes, again_ ? bytes : Bytes(0));
+    under_way_[slot()] = machine.start_copy_out(in_l2, buffers_[slot()], again_ ? bytes : Bytes(0));
+    is_under_way_[slot()] = true;
+    machine.note_tile(name_, bytes);
     ++sent_;
   }
   void finish(Machine& machine) {

@@ -14,6 +14,7 @@ struct Transferred {
   Bytes external;              ///< between L2 and external memory
   std::int64_t tiles = 0;      ///< of all these, in the background: what passes in tiles
   Bytes tile_bytes{0};
+  Bytes tile_bytes_more{0};  ///< of these, what would not move with room for the whole blocks
 
   Transferred& operator+=(const Transferred& o) {
     transfers += o.transfers;
@@ -21,6 +22,7 @@ struct Transferred {
     external += o.external;
     tiles += o.tiles;
     tile_bytes += o.tile_bytes;
+    tile_bytes_more += o.tile_bytes_more;
     return *this;
   }
 };
@@ -34,11 +36,14 @@ inline Transferred transferred_by(const StageRun& stage) {
     if (transfer->background) {
       ++sum.tiles;
       sum.tile_bytes += transfer->bytes;
+      sum.tile_bytes_more += transfer->more;
     }
-    if (is_between_l1_and_l2(transfer->direction))
-      sum += {1, transfer->bytes, Bytes(0), 0, Bytes(0)};
-    else
-      sum += {0, Bytes(0), transfer->bytes, 0, Bytes(0)};
+    if (is_between_l1_and_l2(transfer->direction)) {
+      ++sum.transfers;
+      sum.bytes += transfer->bytes;
+    } else {
+      sum.external += transfer->bytes;
+    }
   }
   return sum;
 }

@@ -88,6 +88,8 @@ class Module(unittest.TestCase):
         with open(budget, "w") as file:
             file.write("budgets:\n  - limits: [L1 peak <= 1 kB, L2 peak <= 1 MB]\n")
         self.assertEqual(leviosim.check(loaded, budget)["not_met"], 1)
+        self.assertEqual(leviosim.compare(folder, slow), found)
+        self.assertEqual(leviosim.check(folder, budget), leviosim.check(loaded, budget))
         self.assertIn(" ms</td>".replace(" ", "<td>"), loaded._repr_html_())
         self.assertRegex(repr(loaded), r"<leviosim.Run of 12 frames, [0-9.]+ ms a frame>")
         self.assertFalse([name for name in dir(leviosim) if name.startswith("_") and not name.startswith("__")])

@@ -154,17 +154,20 @@ TEST(Tiles, PassOneAtATimeThroughOneBuffer) {
 TEST(Tiles, TellWhatAProgramWithRoomWouldNotHaveMoved) {
   Machine machine({.cores = 1, .capacity = Bytes(64 * 1024), .record = true});
   std::vector<P::U32> words(100);
-  const auto stage = machine.stage("s");
   const Words all(words.data(), 100);
-  const auto nothing = [](int, const Tile&, Words) {};
-  for_each_tile<P>(machine, TilePlan(10, 90, 20, 3, 100), nothing,
-                   PassingBlock<P, P::U32>{"once", all});
-  for_each_tile<P>(machine, TilePlan(0, 100, 20, 0, 100), nothing,
-                   PassingBlock<P, P::U32>{"again", all, 1, true});
-  ASSERT_EQ(machine.passages().size(), 2u);
-  EXPECT_EQ(machine.passages()[0].bytes, Bytes(4 * (80 + 4 * 6)));
-  EXPECT_EQ(machine.passages()[0].more, Bytes(4 * 4 * 6));  // the reach of four tiles
-  EXPECT_EQ(machine.passages()[1].more, Bytes(400));
+  const auto passed = [&](const TilePlan& plan, const PassingBlock<P, P::U32>& block) {
+    {
+      const auto stage = machine.stage("s");
+      for_each_tile<P>(
+          machine, plan, [](int, const Tile&, Words) {}, block);
+    }
+    return transferred_by(machine.take_job().stages[0]);
+  };
+  const Transferred once = passed(TilePlan(10, 90, 20, 3, 100), {"once", all});
+  EXPECT_EQ(once.tile_bytes, Bytes(4 * (80 + 4 * 6)));
+  EXPECT_EQ(once.tile_bytes_more, Bytes(4 * 4 * 6));  // the reach of four tiles
+  EXPECT_EQ(passed(TilePlan(0, 100, 20, 0, 100), {"again", all, 1, true}).tile_bytes_more,
+            Bytes(400));
 }
 
 TEST(Tiles, OfAMemoryBeforeExternalMemoryComeFromThere) {

@@ -47,6 +47,21 @@ TEST_F(ReplayCommand, LeavesTheFolderOfTheRun) {
   EXPECT_EQ(before, after);
 }
 
+// What passes in tiles, and how much of it a larger L1 would not move, is a fact of the work.
+TEST_F(ReplayCommand, SaysOfTilesWhatTheRunSaid) {
+  traces::write_synthetic_flight(folder_ / "flight", {.duration_s = 1, .texel_m = 0.02});
+  const ProgramResult run = program({"run", "--data", path("flight"), "-p", "cluster.l1.size=32KiB",
+                                     "--out", path("run"), "--record", "--quiet"});
+  const ProgramResult again = program({"replay", path("run"), "--out", path("again"), "--quiet"});
+  ASSERT_EQ(run.status + again.status, 0) << run.err << again.err;
+  const auto tiles_of = [](const ProgramResult& result) {
+    const std::size_t begin = result.out.find("in tiles: ");
+    return begin == std::string::npos ? "none" : result.out.substr(begin, 300);
+  };
+  EXPECT_NE(tiles_of(run).find(" more)"), std::string::npos) << run.out;
+  EXPECT_EQ(tiles_of(again).substr(0, 200), tiles_of(run).substr(0, 200));
+}
+
 TEST_F(ReplayCommand, AFilmIsOneFileMoreAndChangesNoOther) {
   record();
   const ProgramResult result = program(

@@ -167,7 +167,25 @@ class InBrowser : public Report {
     constexpr const char* kReport = R"(<script>
       const chartsOf = (axis) => [...document.querySelectorAll("canvas")].map((c) => Chart.getChart(c))
         .filter((c) => c && (!axis || c.data.datasets.some((d) => d.yAxisID === axis)));
-      addEventListener("load", () => parent.postMessage({width: innerWidth,
+      const light = (channels) => channels.reduce((sum, c, i) => sum + [0.2126, 0.7152, 0.0722][i] *
+        (c <= 10 ? c / 3294.6 : ((c / 255 + 0.055) / 1.055) ** 2.4), 0.05);
+      const channels = (colour) => colour.match(/[\d.]+/g).slice(0, 3).map(Number);
+      const contrast = (e) => ((a, b) => Math.max(a, b) / Math.min(a, b))(
+        light(channels(getComputedStyle(e).color)), light(channels(getComputedStyle(e).backgroundColor)));
+      const heard = () => ({
+        nameless: [...document.querySelectorAll("th, button, summary")]
+          .filter((e) => !e.textContent.trim() && !e.getAttribute("aria-label")).length,
+        twice: [...document.querySelectorAll("section[aria-label], [role=region]")]
+          .map((e) => e.getAttribute("aria-label")).filter((l, i, all) => all.indexOf(l) < i),
+        skipped: [...document.querySelectorAll("h1, h2, h3")].map((h) => Number(h.tagName[1]))
+          .filter((level, i, all) => i > 0 && level > all[i - 1] + 1).length,
+        faint: [...document.querySelectorAll(".mark")].filter((e) => contrast(e) < 4.5)
+          .map((e) => e.textContent)});
+      addEventListener("load", () => {
+        document.querySelectorAll("details").forEach((d) => { d.open = true; });
+        setTimeout(report, 300);
+      });
+      const report = () => parent.postMessage({heard: heard(), width: innerWidth,
       overflow: document.documentElement.scrollWidth > innerWidth,
       requests: performance.getEntriesByType("resource").length,
       canvases: document.querySelectorAll("canvas").length,
@@ -190,7 +208,7 @@ class InBrowser : public Report {
         .filter(([, names]) => names.size > 1).map(([colour, names]) => [colour, ...names].join(" ")),
       cut: [...document.querySelectorAll("section[id^=difference] .scroll.whole")]
         .some((s) => s.scrollWidth > s.clientWidth),
-      ink: getComputedStyle(document.documentElement).getPropertyValue("--ink").trim()}, "*"));
+      ink: getComputedStyle(document.documentElement).getPropertyValue("--ink").trim()}, "*");
       </script></body>)";
     std::string html = base::read_text_file(path(page));
     html.replace(html.rfind("</body>"), 7, kReport);
@@ -248,6 +266,8 @@ class InBrowser : public Report {
     EXPECT_EQ(page["verdict"], verdicts);
     EXPECT_EQ(page["evil"], false);
     EXPECT_EQ(page["colours"], true);
+    EXPECT_EQ(page["heard"], Json::parse(R"({"nameless":0,"twice":[],"skipped":0,"faint":[]})"))
+        << "of those who listen, or see little";
     EXPECT_EQ(page["unnamed"], 0) << "frames without a colour that says where from";
     EXPECT_EQ(page["alike"], Json::array()) << "two names in one colour, on all charts";
     EXPECT_EQ(page["ink"], dark ? "#e4e9ef" : "#1b2430");

@@ -148,6 +148,16 @@ TEST(SmallL1, HasTheSamePosesOfAsManyFeaturesAsAnImageCanHave) {
   }
 }
 
+/// Of so many cells that L1 has no room for a list of what they may hold, beside strips.
+TEST(SmallL1, HasTheSamePosesOfSmallCells) {
+  for (const char* name : {"levio", "next"}) {
+    Profile profile = profile_named(name, 1);
+    profile.extractor.cell = 6;
+    expect_same(fly(flight_of(320), profile, 8, Bytes(32 * 1024)), fly(flight_of(320), profile),
+                name);
+  }
+}
+
 // A stack of memory that what a stage needs at random does not fit into says what is missing.
 TEST(SmallL1, OfWhichNothingFitsIsRefusedWithStageAndBlock) {
   try {

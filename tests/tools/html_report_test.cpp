@@ -191,5 +191,14 @@ TEST(StudyPage, LeavesOutWhatNoPointHasAndScales) {
   EXPECT_EQ(study["colour"], "");
 }
 
+TEST(StudyPage, SaysThatAPathDivergedInPlaceOfANumber) {
+  Table points({{.title = "error", .key = "ate", .unit = "m"}});
+  points.add({2.54e23});
+  points.add({0.5});
+  const Json data = study_report(
+      {.title = "x", .summary = "", .points = points, .x = "ate", .y = "ate", .colour = ""});
+  EXPECT_EQ(data["study"]["table"]["ate"], Json::parse(R"(["diverged",0.5])"));
+}
+
 }  // namespace
 }  // namespace leviosim::tools

@@ -124,6 +124,16 @@ TEST(TerminalTable, ShowsNumbersInTheUnitOfTheirColumn) {
             "b        –        unknown\n");
 }
 
+TEST(TerminalTable, SaysThatAPathDivergedWhereNoVehicleFliesSoFar) {
+  Table table({{.title = "error", .shown = 2, .key = "ate_m"},
+               {.title = "path", .unit = "m", .scale = 1e-3},
+               {.title = "count", .key = "count"}});
+  table.add({2.54e23, 3e12, 2.54e23});
+  table.add({0.5, 1500.0, 7.0});
+  EXPECT_EQ(shown_cells(table)[1], (std::vector<std::string>{"diverged", "diverged", "2.54e+23"}));
+  EXPECT_EQ(shown_cells(table)[2], (std::vector<std::string>{"0.50", "1.5", "7"}));
+}
+
 TEST(Tables, FitTheWidth) {
   const RunResult run = example_run();
   const auto header = [](const std::string& table) { return lines_of(table).at(1); };

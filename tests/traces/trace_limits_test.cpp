@@ -117,7 +117,7 @@ TEST(TraceLimits, StagesOfOneNameAreManyOfDifferentNamesAreFew) {
 }
 
 TEST(TraceLimits, BackgroundTransfersAreWaitedFor) {
-  const std::string begin = bytes({4, 0, 8});
+  const std::string begin = bytes({4, 0, 8, 8});
   const auto wait = [](std::uint64_t number) { return bytes({5, number}); };
   const auto steps = [](std::initializer_list<std::string> all) {
     std::string content = bytes({all.size()});
@@ -131,6 +131,8 @@ TEST(TraceLimits, BackgroundTransfersAreWaitedFor) {
   expect_refused(steps({wait(0)}), {"the number of a background transfer is 0; expected none"});
   expect_refused(steps({wait(0), begin}), {"expected none"});
   expect_refused(steps({begin, wait(1)}), {"is 1; expected 0 to 0"});
+  expect_refused(steps({bytes({4, 0, 8, 9}), wait(0)}),
+                 {"bytes of a transfer that a larger memory would not need is 9; expected 0 to 8"});
 }
 
 TEST(TraceLimits, BytesOfMemoriesAndTransfersAreBounded) {

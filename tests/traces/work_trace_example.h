@@ -41,7 +41,7 @@ inline work::StageRun cluster_stage(int frame) {
   work::StageRun stage{"matching", {}, {Bytes(900 + frame % 2), Bytes(500), {}}};
   stage.memory.blocks = {{"image", Bytes(0), Bytes(300)}, {"scratch", Bytes(300), Bytes(600)}};
   stage.steps.emplace_back(work::Serial{counts(10 + n)});
-  stage.steps.emplace_back(work::Transfer{work::Direction::L2ToL1, Bytes(300), true});
+  stage.steps.emplace_back(work::Transfer{work::Direction::L2ToL1, Bytes(300), true, Bytes(20)});
   stage.steps.emplace_back(
       work::Fork{"compare", {counts(1000 + n * n), counts(990), counts(n)}, false});
   stage.steps.emplace_back(work::TransferWait{0});
@@ -153,6 +153,7 @@ inline void expect_equal(const work::StageRun& a, const work::StageRun& b) {
       EXPECT_EQ(transfer->direction, other.direction);
       EXPECT_EQ(transfer->bytes, other.bytes);
       EXPECT_EQ(transfer->background, other.background);
+      EXPECT_EQ(transfer->more, other.more);
     }
     if (const auto* wait = std::get_if<work::TransferWait>(&a.steps[i])) {
       EXPECT_EQ(wait->number, std::get<work::TransferWait>(b.steps[i]).number);

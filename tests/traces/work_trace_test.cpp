@@ -236,9 +236,9 @@ TEST(WorkTrace, GivesTheCompiledWorkOfOneInstructionSetAlone) {
 /// LEVIOSIM_RENEW_GOLDEN the file is written anew: for a version that no release has written yet.
 TEST(WorkTrace, WritesTheContentOfItsVersion) {
   if (std::getenv("LEVIOSIM_RENEW_GOLDEN") != nullptr)
-    std::ofstream(golden_file("version_9.trace"), std::ios::binary)
+    std::ofstream(golden_file("version_10.trace"), std::ios::binary)
         << testing::example_trace_with_offload(5);
-  const std::string golden = base::read_text_file(golden_file("version_9.trace"));
+  const std::string golden = base::read_text_file(golden_file("version_10.trace"));
   EXPECT_EQ(contents_of(golden), contents_of(testing::example_trace_with_offload(5)));
 }
 
@@ -304,8 +304,8 @@ TEST(WorkTrace, SaysWhatIsWrongAndWhere) {
   damaged[kHeadBytes + 20] ^= 1;
   refuse(damaged, {"byte 16", "checksum", "damaged"});
   constexpr std::uint32_t kVersion = kWorkTraceFile.version;
-  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 10", "reads version 9", "newer"});
-  refuse(trace_of(contents_of(whole), kVersion - 1), {"version 8", "reads version 9", "again"});
+  refuse(trace_of(contents_of(whole), kVersion + 1), {"version 11", "reads version 10", "newer"});
+  refuse(trace_of(contents_of(whole), kVersion - 1), {"version 9", "reads version 10", "again"});
   std::string version = whole;
   version[8] = 1;
   refuse(version, {"byte 8", "checksum"});

@@ -33,6 +33,15 @@ def get_requires_for_build_wheel(config_settings=None):
     return []
 
 
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """Without it, pip would build everything to read three lines."""
+    about = f"leviosim-{_version()}.dist-info"
+    os.makedirs(os.path.join(metadata_directory, about), exist_ok=True)
+    with open(os.path.join(metadata_directory, about, "METADATA"), "w") as file:
+        file.write(_metadata())
+    return about
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     subprocess.run([os.path.join(ROOT, "tools", "build.sh"), "python", "leviosim_python"], check=True)
     tag = _tag()

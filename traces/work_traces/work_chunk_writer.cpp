@@ -75,6 +75,7 @@ void ChunkWriter::write_stage(const work::StageRun& stage, bool on_controller) {
       text_.whole(transfer->background ? kBackgroundTransfer : kTransfer);
       text_.whole(static_cast<std::uint64_t>(transfer->direction));
       text_.whole(static_cast<std::uint64_t>(transfer->bytes.count()));
+      if (transfer->background) text_.whole(static_cast<std::uint64_t>(transfer->more.count()));
     } else {
       text_.whole(kWait);
       text_.whole(static_cast<std::uint64_t>(std::get<work::TransferWait>(step).number));

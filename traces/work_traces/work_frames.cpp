@@ -221,8 +221,12 @@ work::Transfer WorkFrames::read_transfer(bool background, bool on_controller) {
     text_.fail("a transfer of the cluster from or to external memory, which it cannot reach");
   const Bytes bytes(
       static_cast<std::int64_t>(text_.whole_below(kMostTransferred, "bytes of a transfer")));
-  background_ += background;
-  return {direction, bytes, background};
+  if (!background) return {direction, bytes};
+  ++background_;
+  const auto most = static_cast<std::uint64_t>(bytes.count()) + 1;
+  const Bytes more(static_cast<std::int64_t>(
+      text_.whole_below(most, "bytes of a transfer that a larger memory would not need")));
+  return {direction, bytes, true, more};
 }
 
 work::TransferWait WorkFrames::read_wait() {

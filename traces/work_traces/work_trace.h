@@ -31,7 +31,7 @@
 namespace leviosim::traces {
 
 /// Work traces as files.
-inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 9};
+inline constexpr FileKind kWorkTraceFile{"LEVIOWT\n", "a work trace", 10};
 
 class ByteReader;
 

@@ -105,22 +105,25 @@ ObservedFeatures<P> features_of_frame(const FrontEndState<P>& state,
     extract(features.list);
     return features;
   }
-  FeatureList<P> all;
+  ObservedFeatures<P> in_l2 = state.keyframe.fresh;
+  in_l2.list.descriptors_in_l2 = true;
+  FeatureList<P> all = in_l2.list;
+  const bool local_first = state.machine.has_room(Bytes(2LL * sizeof(typename P::U16) * most));
   {
     const work::Arena::Frame room(local);
-    all = alloc_list(state, most);
+    if (local_first) all = alloc_list(state, most);
     extract(all);
   }
   const int capacity = std::min(most, all.count + most_found_by_patches(state));
-  if (state.machine.has_room(observed_features_size<P>(capacity, false)))
-    return with_landmarks(shortened(state, all, capacity));
-  ObservedFeatures<P> features = state.keyframe.fresh;
-  state.machine.copy_out(features.list.x, all.x.subspan(0, all.count));
-  state.machine.copy_out(features.list.y, all.y.subspan(0, all.count));
-  features.list.count = all.count;
-  features.list.capacity = capacity;
-  features.list.descriptors_in_l2 = true;
-  return features;
+  if (local_first) {
+    if (state.machine.has_room(observed_features_size<P>(capacity, false)))
+      return with_landmarks(shortened(state, all, capacity));
+    state.machine.copy_out(in_l2.list.x, all.x.subspan(0, all.count));
+    state.machine.copy_out(in_l2.list.y, all.y.subspan(0, all.count));
+  }
+  in_l2.list.count = all.count;
+  in_l2.list.capacity = capacity;
+  return in_l2;
 }
 
 template ObservedFeatures<work::Native> features_of_frame(

@@ -68,8 +68,8 @@ constexpr std::array kParameters = {
               "largest difference of two patches that agree, as a share of their contrast", false,
               LEVIOSIM_FIELD(patches.max_difference)},
     Parameter{"workload.ransac_batch", Kind::whole, "hypotheses", 0, 64,
-              "hypotheses that a fork of EPnP and of the 8-point algorithm computes; 0: one for "
-              "each core",
+              "hypotheses that a fork of EPnP and of the 8-point algorithm computes; 0: eight, or "
+              "the next multiple of the team's cores",
               false, [](const Profile& p) { return static_cast<double>(p.epnp.batch); },
               [](Profile& p, double value) {
                 p.epnp.batch = p.essential.batch = static_cast<int>(value);

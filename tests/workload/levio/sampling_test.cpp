@@ -133,5 +133,27 @@ TEST(DrawSample, CountingDrawsTheSameAndCountsTheWork) {
   EXPECT_EQ(counts[work::Op::LoopIteration], kDraws * kSize);
 }
 
+/// In a batch on so many cores, where so many have room.
+int hypotheses_of(int cores, int fitting) {
+  const Bytes each(100), padding(4), best(80);
+  const work::Machine machine({.cores = cores, .capacity = (each + padding) * fitting + best});
+  return Batches(640, 0, machine, each).largest();
+}
+
+// A team of fewer cores waits no more often than the eight of the release, and no core is idle.
+TEST(Batches, AreEightHypothesesOrTheNextMultipleOfTheCores) {
+  for (const auto& [cores, hypotheses] :
+       {std::pair{1, 1}, {2, 8}, {3, 9}, {4, 8}, {6, 12}, {7, 14}, {8, 8}, {9, 9}, {16, 16}})
+    EXPECT_EQ(hypotheses_of(cores, 100), hypotheses) << cores;
+}
+
+TEST(Batches, OfALittleMemoryAreOneForEachCoreOrAsManyAsHaveRoom) {
+  EXPECT_EQ(hypotheses_of(4, 8), 8);
+  EXPECT_EQ(hypotheses_of(4, 7), 4);
+  EXPECT_EQ(hypotheses_of(4, 3), 3);
+  EXPECT_EQ(hypotheses_of(16, 12), 12);
+  EXPECT_EQ(hypotheses_of(8, 0), 1);
+}
+
 }  // namespace
 }  // namespace leviosim::vio::levio

@@ -9,10 +9,16 @@
 namespace leviosim::tools {
 namespace {
 
-Json scaled_cells(Json cells, double scale) {
-  if (scale != 1)
-    for (Json& cell : cells)
-      if (cell.is_number()) cell = cell.get<double>() * scale;
+/// As people see them: in the unit of the column, and in words where a path diverged.
+Json cells_for_people(Json cells, const Head& column) {
+  for (Json& cell : cells) {
+    if (!cell.is_number()) continue;
+    const auto value = cell.get<double>();
+    if (is_diverged(column, value))
+      cell = kDiverged;
+    else if (column.scale != 1)
+      cell = value * column.scale;
+  }
   return cells;
 }
 
@@ -60,7 +66,7 @@ Json study_report(const StudyPage& page) {
                                 {"unit", column.unit},
                                 {"kind", column.is_setup ? "setup" : "figure"},
                                 {"more", column.more_is_better}});
-    study["table"][column.key] = scaled_cells(table.at(column.key), column.scale);
+    study["table"][column.key] = cells_for_people(table.at(column.key), column);
   }
   const auto known = [&](const std::string& name) { return study["table"].contains(name); };
   const auto axis = [&](const std::string& wanted, std::size_t other) {

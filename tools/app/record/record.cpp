@@ -32,6 +32,7 @@ constexpr std::array kKeptOfStages{"stages.{}.calls",
                                    "stages.{}.memory.parallel",
                                    "stages.{}.tiles",
                                    "stages.{}.tile_bytes",
+                                   "stages.{}.tile_bytes_more",
                                    "energy.{}.call"};
 
 bool is_detail(const std::string& name) {

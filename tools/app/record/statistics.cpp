@@ -122,6 +122,8 @@ void add_stage(StatisticList& list, const RunResult& run, const StageResult& sta
   list.add(path + "tiles", "1", "tiles that passed through its memory", stage.transfers.tiles);
   list.add(path + "tile_bytes", "byte", "size of these tiles together",
            stage.transfers.tile_bytes.count());
+  list.add(path + "tile_bytes_more", "byte", "of these, what would not move with more memory",
+           stage.transfers.tile_bytes_more.count());
 }
 
 void add_frames(StatisticList& list, const RunResult& run) {

@@ -113,27 +113,17 @@ std::string memory_line(const RunResult& run) {
   return text;
 }
 
-/// Of the passages of a stage, what a program whose memory holds all would not have moved.
-Bytes more_than_resident(const RunResult& run, const std::string& stage) {
-  Bytes more;
-  for (const work::Passage& passage : run.passages)
-    if (passage.stage == stage) more += passage.more;
-  return more;
-}
-
-/// "triangulation 3.1 tiles (3.9 kB)".
-std::string tiles_of(const RunResult& run, const StageResult& stage, double frames) {
+/// "triangulation 3.1 tiles (3.9 kB, 1.2 more)": more than a program with room would move.
+std::string tiles_of(const StageResult& stage, double frames) {
+  const work::Transferred& moved = stage.transfers;
   const auto kb = [&](Bytes bytes) { return static_cast<double>(bytes.count()) * 1e-3 / frames; };
-  const std::string more =
-      run.passages.empty() ? ""
-                           : fmt::format(", {:.1f} more", kb(more_than_resident(run, stage.name)));
-  return fmt::format("{} {:.1f} tiles ({:.1f} kB{})", printable(stage.name),
-                     static_cast<double>(stage.transfers.tiles) / frames,
-                     kb(stage.transfers.tile_bytes), more);
+  return fmt::format("{} {:.1f} tiles ({:.1f} kB, {:.1f} more)", printable(stage.name),
+                     static_cast<double>(moved.tiles) / frames, kb(moved.tile_bytes),
+                     kb(moved.tile_bytes_more));
 }
 
 /// What has no room in a memory and passes through it in tiles, how much more that is than a
-/// program with room would move, where the work was computed, and how long cores wait for the DMA
+/// program with room would move, and how long cores wait for the DMA
 /// in these stages; empty if all has room.
 std::string tiles_line(const RunResult& run) {
   const auto frames = static_cast<double>(std::max<std::size_t>(1, run.frames.size()));
@@ -141,7 +131,7 @@ std::string tiles_line(const RunResult& run) {
   double waited_s = 0;
   for (const StageResult& stage : run.stages) {
     if (stage.transfers.tiles == 0) continue;
-    texts.push_back(tiles_of(run, stage, frames));
+    texts.push_back(tiles_of(stage, frames));
     const int cores = stage.on_controller ? 1 : run.cores;
     waited_s += stage.account.team[sim::Mechanism::Transfer] / cores /
                 static_cast<double>(clock_of(run, stage).count());

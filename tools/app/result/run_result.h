@@ -88,7 +88,6 @@ struct RunResult : RunSubject {
   Bytes external_size;
   std::vector<L2Row> l2;
   std::vector<L2Row> external;  ///< what lies in external memory, since L2 has no room for it
-  std::vector<work::Passage> passages;   ///< through L1 in tiles, where the work was computed
   std::int64_t optimiser_published = 0;  ///< results that reached the front end
   std::int64_t optimiser_late = 0;       ///< frames at whose start the controller was still busy
   std::vector<traces::StampedPose> trajectory;

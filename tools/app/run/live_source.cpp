@@ -188,9 +188,6 @@ void LiveSource::describe(RunResult& result) const {
     if (arena.used() > Bytes(0)) result.l2.push_back({name, arena.used(), arena.live()});
   if (const work::Arena& external = controller_.behind(); external.peak() > Bytes(0))
     result.external.push_back({kOptimiserExternal, external.peak(), external.blocks_at_peak()});
-  result.passages = cluster_.passages();
-  result.passages.insert(result.passages.end(), controller_.passages().begin(),
-                         controller_.passages().end());
   if (evaluate_ && !feed_.truth().empty() && result.trajectory.size() >= kFewestPoses &&
       why_incomparable(result).empty())
     evaluate(result);

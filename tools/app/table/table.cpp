@@ -1,8 +1,15 @@
 #include "tools/app/table/table.h"
 
+#include <cmath>
+
 #include "sim/base/check.h"
 
 namespace leviosim::tools {
+
+bool is_diverged(const Head& head, double value) {
+  const bool in_metres = head.unit == "m" || (head.unit.empty() && head.key.ends_with("_m"));
+  return in_metres && !(std::abs(value * head.scale) < kDiverged_m);
+}
 
 void Table::add(std::vector<Cell> cells) {
   check_equal(cells.size(), heads_.size(), "cells in a table row");

@@ -34,6 +34,9 @@ struct Head {
   bool more_is_better = false;
 };
 
+/// Whether people see kDiverged in place of this value: a length in metres that no vehicle flies.
+bool is_diverged(const Head& head, double value);
+
 template <class Row>
 struct Column {
   Head head;

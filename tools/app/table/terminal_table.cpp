@@ -19,6 +19,7 @@ constexpr int kLeastText = 20;
 std::string spaces(int n) { return std::string(static_cast<std::size_t>(std::max(n, 0)), ' '); }
 
 std::string number_text(const Head& head, double value) {
+  if (is_diverged(head, value)) return kDiverged;
   return head.shown < 0 ? fmt::format("{:g}", value * head.scale)
                         : fmt::format("{:.{}f}", value * head.scale, head.shown);
 }

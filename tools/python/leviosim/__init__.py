@@ -228,14 +228,20 @@ def load(folder: str) -> Run:
     return Run(files)
 
 
-def compare(a: Run, b: Run, *, allow: Sequence[str] = ()) -> Dict[str, Any]:
-    """As `leviosim compare --format json`: figures, stages, and `why`. `allow`: what may differ besides the chip."""
-    return json.loads(_core.compare_json(a.files["run.json"], b.files["run.json"], ",".join(allow)))
+def _record(run: Union[Run, str]) -> Union[str, bytes]:
+    return (run if isinstance(run, Run) else load(run)).files["run.json"]
 
 
-def check(run: Run, budget: str, *, baseline: Optional[Run] = None) -> Dict[str, Any]:
-    """As `leviosim check --json` with a file of limits: `not_met` counts, `findings` say where and why."""
-    return json.loads(_core.check_json(run.files["run.json"], os.fspath(budget), baseline.files["run.json"] if baseline else ""))
+def compare(a: Union[Run, str], b: Union[Run, str], *, allow: Sequence[str] = ()) -> Dict[str, Any]:
+    """As `leviosim compare --json`, of runs or their folders: figures, stages, and `why`. `allow`: what may differ besides
+    the chip."""
+    return json.loads(_core.compare_json(_record(a), _record(b), ",".join(allow)))
+
+
+def check(run: Union[Run, str], budget: str, *, baseline: Union[Run, str, None] = None) -> Dict[str, Any]:
+    """As `leviosim check --json` with a file of limits, of a run or its folder: `not_met` counts, `findings` say where and
+    why."""
+    return json.loads(_core.check_json(_record(run), os.fspath(budget), "" if baseline is None else _record(baseline)))
 
 
 def tune(platform: Platform, clocks: Sequence[str], *, fps: float, data: str = "synthetic", profile: str = "levio",

@@ -1,6 +1,6 @@
-// RANSAC around EPnP as the released program runs it (PARAMETERS.md#epnp): in batches of
-// one sample for each core the master draws and copies the samples, the team solves one hypothesis
-// per sample, and the master scores all of them serially over all matches.
+// RANSAC around EPnP as the released program runs it (PARAMETERS.md#epnp): in batches
+// of one sample for each core, or a few, the master draws and copies the samples, the team solves
+// one hypothesis per sample, and the master scores all of them serially over all matches.
 //
 // The best hypothesis is the result however few its inliers are. Left out, as in the release: early
 // termination, and a final refit to the inliers.
@@ -22,7 +22,7 @@ struct LandmarkMatches {
 
 struct EpnpRansacOptions {
   int iterations = 64;
-  int batch = 0;  ///< hypotheses per fork; 0: one for each core (sampling.h)
+  int batch = 0;  ///< hypotheses per fork; 0: as the team has cores (sampling.h)
   float inlier_px = 1.41421356f;
 };
 

@@ -1,7 +1,7 @@
 // RANSAC for the essential matrix as the released program runs it
-// (PARAMETERS.md#eight-point-algorithm): in batches of one sample for each core the master draws
-// the samples, one fork computes a hypothesis per sample, another scores them, and the master keeps
-// the best.
+// (PARAMETERS.md#eight-point-algorithm): in batches of one sample for each core, or a few, the
+// master draws the samples, one fork computes a hypothesis per sample, another scores them, and the
+// master keeps the best.
 //
 // The number of iterations is fixed: nothing stops early, and nothing is fitted to the inliers.
 #pragma once
@@ -30,7 +30,7 @@ void score_essential(MatrixView<P> essential, const TwoViewMatches<P>& matches,
 
 struct EssentialRansacOptions {
   int iterations = 640;
-  int batch = 0;  ///< hypotheses per fork; 0: one for each core (sampling.h)
+  int batch = 0;  ///< hypotheses per fork; 0: as the team has cores (sampling.h)
 };
 
 template <class P>

@@ -71,25 +71,31 @@ void number_consecutively(Indices indices) {
 /// How hypotheses are spread over forks. Samples are drawn and results compared in one order, so
 /// that the best hypothesis does not depend on it.
 class Batches {
+  /// The released program's, which has a core for each.
+  static constexpr int kReleased = 8;
+
  public:
   /// @param hypotheses  of all batches
-  /// @param wanted      of a batch; 0: one for each core, as the released program has it, or for as
-  ///                    many as have room
+  /// @param wanted      of a batch; 0: as many for each core of a team as make kReleased or more,
+  ///                    since hypotheses differ in length and fewer cores would wait at more
+  ///                    barriers; or one for each core, or for as many as have room
   /// @param each        local memory that a hypothesis takes, with the scratch of its core
   Batches(int hypotheses, int wanted, const work::Machine& machine, Bytes each)
       : hypotheses_(hypotheses),
-        largest_(std::min(hypotheses, wanted > 0 ? wanted : cores_with(machine, each))) {}
+        largest_(std::min(hypotheses, wanted > 0 ? wanted : with_room(machine, each))) {}
 
   int largest() const { return largest_; }
   int count() const { return (hypotheses_ + largest_ - 1) / largest_; }
   int size(int batch) const { return std::min(largest_, hypotheses_ - batch * largest_); }
 
  private:
-  static int cores_with(const work::Machine& machine, Bytes each) {
+  static int with_room(const work::Machine& machine, Bytes each) {
     // What is lent begins at words, and the best hypothesis takes some more.
     constexpr Bytes kBest(80), kPadding(4);
     const std::int64_t fit = (machine.local().free() - kBest).count() / (each + kPadding).count();
-    return static_cast<int>(std::clamp<std::int64_t>(fit, 1, machine.cores()));
+    const int cores = machine.cores();
+    const int for_all = cores == 1 ? 1 : (kReleased + cores - 1) / cores * cores;
+    return fit >= for_all ? for_all : static_cast<int>(std::clamp<std::int64_t>(fit, 1, cores));
   }
 
   int hypotheses_;

@@ -19,7 +19,7 @@ function checkSection(check) {
         Math.abs(finding.bound);
   };
   const columns = [
-    {title: '', text: true, node: (word) => status(word)}, {title: 'limit', text: true, wrap: true},
+    {title: 'result', text: true, node: (word) => status(word)}, {title: 'limit', text: true, wrap: true},
     {title: 'stage', text: true}, {title: 'margin, %', node: (value) => signed(value)},
     {title: 'found'}, {title: 'bound'}, {title: 'statistic', text: true}
   ];

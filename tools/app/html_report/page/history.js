@@ -66,7 +66,7 @@ function historyCards(history) {
   };
   show();
   return [element(
-      'div', {class: 'card'}, element('h3', {}, 'Two commits'),
+      'div', {class: 'card'}, element('h2', {}, 'Two commits'),
       element(
           'p', {class: 'hint'},
           'Of a mean frame. A click on a point of a chart compares it with the one before.'),

@@ -30,7 +30,7 @@ function chipText(run) {
 /** Figures of several runs beside each other. */
 function runsTable(runs, names) {
   const titles = [...new Set(runs.flatMap((run) => run.figures.map((figure) => figure.title)))];
-  const columns = [{title: '', text: true}, ...names.map((name) => ({title: name}))];
+  const columns = [{title: 'figure', text: true}, ...names.map((name) => ({title: name}))];
   const abouts = [...new Set(runs.flatMap((run) => run.verdict.list.map((v) => v.about)))];
   const verdict = (run, about) => {
     const found = run.verdict.list.find((v) => v.about === about);

@@ -154,7 +154,7 @@ function stagesSection(run) {
                row.onController ? null : row.speedup, row.cell('parallel_ms_per_call'),
                row.onController || !ofCluster ? null : (100 * row.parallel) / ofCluster,
                (row.cell('memory_parallel_bytes') || 0) / 1e3]),
-      {whole: true, label: 'Stages'});
+      {whole: true, label: 'Stages, per call'});
   return section(
       'stages', 'Stages',
       element(

@@ -25,8 +25,14 @@ function medianOf(values) {
   return sorted.length % 2 ? sorted[Math.floor(middle)] : (sorted[middle - 1] + sorted[middle]) / 2;
 }
 
-function axisTitle(column) {
-  return column.unit ? `${column.title}, ${column.unit}` : column.title;
+/** With its unit, unless the title has it. */
+function axisTitle({title, unit}) {
+  return unit && !title.endsWith(`[${unit}]`) ? `${title}, ${unit}` : title;
+}
+
+/** Ticks between whole numbers say nothing of cores, units and commits. */
+function ticksOf(values) {
+  return values.every(Number.isInteger) ? {precision: 0} : {};
 }
 
 /** Logarithmic for positive values over more than two orders of magnitude. */
@@ -35,9 +41,9 @@ function axisType(values) {
   return least > 0 && greatest > 100 * least ? 'logarithmic' : 'linear';
 }
 
-/** A word as the first of a sentence; a path stays as it is. */
+/** A word as the first of a sentence; a path and the name before a colon stay as they are. */
 function capital(text) {
-  return /^\w+[.=/]/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1);
+  return /^\w+[.=/:]/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1);
 }
 
 function curveFigure(study, yName) {
@@ -54,7 +60,7 @@ function curveFigure(study, yName) {
     const at = new Map();
     seriesOf.forEach((v, i) => {
       const [x, y] = [leadingNumber(cells(xName)[i]), cells(yName)[i]];
-      if (v !== value || x === null || y === null) return;
+      if (v !== value || x === null || typeof y !== 'number') return;
       if (!at.has(x)) at.set(x, []);
       at.get(x).push(y);
     });
@@ -98,7 +104,8 @@ function curveFigure(study, yName) {
           x: {
             title: {display: true, text: axisTitle(column(xName))},
             grid: {display: false},
-            ticks: names ? {precision: 0, callback: (value) => names[value] || ''} : {}
+            ticks: names ? {precision: 0, callback: (value) => names[value] || ''} :
+                           ticksOf(lines.flatMap(({points}) => points.map((p) => p.x)))
           },
           y: {
             title: {display: true, text: axisTitle(column(yName))},
@@ -123,7 +130,7 @@ function curveFigure(study, yName) {
     }),
     table: () => ({
       columns: [
-        {title: seriesName ? axisTitle(column(seriesName)) : '', text: true},
+        {title: seriesName ? axisTitle(column(seriesName)) : 'curve', text: true},
         {title: axisTitle(column(xName))}, {title: 'median'}, {title: 'least'}, {title: 'greatest'}
       ],
       rows: lines.flatMap(({value, points}) => points.map((p) => [value, p.x, p.y, p.low, p.high])),
@@ -201,14 +208,15 @@ function changesFigure(title, hint, of, labels, series) {
 function barFigure(study, name) {
   const column = study.columns.find((c) => c.name === name);
   const labels = study.table[study.bars.of];
-  const values = study.table[name];
+  const cells = study.table[name];
+  const values = cells.map((cell) => (typeof cell === 'number' ? cell : null));
   const [base] = values;
   const changes = values.map((value) => (value === null || !base ? null : 100 * (value / base - 1)));
   const better = (change) => (column.more ? change > 0 : change < 0);
   const unit = column.unit ? ` ${column.unit}` : '';
   const texts = values.map((value, i) => {
     const whole = `${numberText(value)}${unit}`;
-    return value === null ? [] : i === 0 ? [whole] : [`${signed(changes[i], 2)} %`, whole];
+    return value === null ? [cells[i]].filter((cell) => cell !== null) : i === 0 ? [whole] : [`${signed(changes[i], 2)} %`, whole];
   });
   return changesFigure(
       capital(column.title),
@@ -252,6 +260,11 @@ function scatterFigure(study) {
                     (i) =>
                         ({i, x: leadingNumber(table[xName][i]), y: leadingNumber(table[yName][i])}))
                 .filter((p) => p.x !== null && p.y !== null);
+  const axisOf = (name, values) => ({
+    type: axisType(values),
+    ticks: ticksOf(values),
+    title: {display: true, text: axisTitle(column(name))}
+  });
   const panel = element(
       'div', {class: 'card', 'aria-live': 'polite'},
       element('p', {class: 'hint'}, 'A click on a point, or Enter, shows its set-up here.'));
@@ -298,7 +311,7 @@ function scatterFigure(study) {
 
   const figure = chartFigure({
     title: 'All points',
-    hint: 'The line joins the points that no other beats in both figures.',
+    hint: 'The line joins the points that no other beats in both figures, where both are figures.',
     controls,
     height: (width) => Math.min(480, Math.max(300, 0.55 * width)),
     onpick: (item, chart) => {
@@ -307,7 +320,10 @@ function scatterFigure(study) {
     },
     config: () => {
       const all = points();
-      const front = paretoFront(all, column(xName).more, column(yName).more);
+      // Of an input of the study neither less nor more is better.
+      const front = isSetup(column(xName)) || isSetup(column(yName)) ?
+          [] :
+          paretoFront(all, column(xName).more, column(yName).more);
       const groups =
           colourName ? [...new Set(all.map((p) => table[colourName][p.i]))].slice(0, 12) : [null];
       return {
@@ -324,7 +340,7 @@ function scatterFigure(study) {
                   pointRadius: all.length > 400 ? 3 : 5,
                   pointHoverRadius: 7
                 })),
-            {
+            ...(front.length === 0 ? [] : [{
               label: 'not beaten',
               data: front,
               showLine: true,
@@ -336,14 +352,14 @@ function scatterFigure(study) {
               pointRadius: 7,
               pointHoverRadius: 8,
               pointBorderColor: style('--soft')
-            },
+            }]),
           ]
         },
         options: {
           interaction: {mode: 'nearest', intersect: true},
           scales: {
-            x: {type: axisType(all.map((p) => p.x)), title: {display: true, text: axisTitle(column(xName))}},
-            y: {type: axisType(all.map((p) => p.y)), title: {display: true, text: axisTitle(column(yName))}}
+            x: axisOf(xName, all.map((p) => p.x)),
+            y: axisOf(yName, all.map((p) => p.y))
           },
           plugins: {
             tooltip: {
@@ -361,7 +377,8 @@ function scatterFigure(study) {
     table: () => ({
       columns: columns.map((c) => ({
                              title: axisTitle(c),
-                             text: typeof (table[c.name].find((v) => v !== null) ?? 0) === 'string'
+                             text: table[c.name].some((v) => v !== null) &&
+                                 table[c.name].every((v) => v === null || typeof v === 'string')
                            })),
       rows: [...Array(count).keys()].map((i) => columns.map((c) => table[c.name][i])),
     }),
@@ -384,7 +401,7 @@ function foundTable({title, titles, rows}) {
   const cells = rows.map((row) => shown.map((i) => cell(row[i])));
   const isText = (i) => cells.some((row) => typeof row[i] !== 'number' && !/^[-–.\d]/.test(row[i]));
   return element(
-      'div', {class: 'card'}, element('h3', {}, title),
+      'div', {class: 'card'}, element('h2', {}, title),
       sortableTable(
           shown.map((column, i) => ({title: titles[column], text: isText(i)})), cells, {label: title}));
 }
@@ -409,7 +426,7 @@ function studySections(study, top) {
         element(
             'div', {class: 'pair'},
             ...study.curves.y
-                .filter((name) => study.table[name] && study.table[name].some((v) => v !== null))
+                .filter((name) => study.table[name] && study.table[name].some((v) => typeof v === 'number'))
                 .map((name) => curveFigure(study, name)))));
   sections.push(section('points', 'Points', ...scatterFigure(study)));
   return sections;

@@ -141,12 +141,9 @@ const FeasibilityStudy::Recorded& FeasibilityStudy::work_in(const Memories& memo
       "recorded work", recording.writer.finish(std::move(recording.info)));
   work.l1 = verdict_of_l1(run).occupied;
   work.l2 = verdict_of_l2(run).occupied;
-  work.in_tiles =
-      std::any_of(run.passages.begin(), run.passages.end(), [&](const work::Passage& passage) {
-        const auto stage = std::find_if(run.stages.begin(), run.stages.end(),
-                                        [&](const auto& s) { return s.name == passage.stage; });
-        return stage != run.stages.end() && !stage->on_controller;
-      });
+  work.in_tiles = std::any_of(run.stages.begin(), run.stages.end(), [](const StageResult& stage) {
+    return !stage.on_controller && stage.transfers.tiles > 0;
+  });
   return work;
 }
 

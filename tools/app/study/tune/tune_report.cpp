@@ -213,8 +213,7 @@ std::string tune_notes(const TunePlan& plan) {
       info_of(plan.deadline).description, name_of(plan.measure.alignment));
   if (plan.variations.size() > 1)
     text += fmt::format("medians over {}; failed: above the limit, or diverged; poses: the least\n",
-                        plan.perturbs ? fmt::format("{} perturbed runs, since seeds change nothing "
-                                                    "(runs.csv names them)",
+                        plan.perturbs ? fmt::format("{} perturbed runs (runs.csv names them)",
                                                     plan.variations.size())
                                       : fmt::format("{} seeds", plan.variations.size()));
   return text;
@@ -267,10 +266,10 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
   table.push_back(
       {{"band", kRight, 2}, [](P p) { return milli_band(p.median(&LoopOutcome::power_w)); }});
   table.push_back(
-      {{"mJ/frame", kRight, 1}, [](P p) { return milli(p.median(&LoopOutcome::frame_j), 3); }});
+      {{"mJ/frame", kRight, 2}, [](P p) { return milli(p.median(&LoopOutcome::frame_j), 3); }});
   table.push_back({{"ATE m"}, [](P p) { return error_text(p.ate().median, 3); }});
   if (plan.variations.size() > 1)
-    table.push_back({{"least … greatest", kRight, 2}, [](P p) {
+    table.push_back({{"least … greatest"}, [](P p) {
                        return fmt::format("{} … {}", error_text(p.ate().low, 3),
                                           error_text(p.ate().high, 3));
                      }});
