@@ -13,18 +13,18 @@ namespace {
 
 using traces::testing::expect_input_error;
 
-struct Row {
+struct ExampleRow {
   std::string name;
   std::optional<double> value;
   std::int64_t count = 0;
 };
 
-Table example(const std::vector<Row>& rows) {
+Table example(const std::vector<ExampleRow>& rows) {
   return table_of(
-      Columns<Row>{{{.key = "name"}, [](const Row& r) { return r.name; }},
-                   {{.key = "value", .decimals = 2}, [](const Row& r) { return r.value; }},
-                   {{.title = "for people"}, [](const Row&) { return "seen"; }},
-                   {{.key = "count"}, [](const Row& r) { return r.count; }}},
+      Columns<ExampleRow>{{{.key = "name"}, [](const ExampleRow& r) { return r.name; }},
+                   {{.key = "value", .decimals = 2}, [](const ExampleRow& r) { return r.value; }},
+                   {{.title = "for people"}, [](const ExampleRow&) { return "seen"; }},
+                   {{.key = "count"}, [](const ExampleRow& r) { return r.count; }}},
       rows);
 }
 

@@ -12,6 +12,7 @@
 #include "sim/chip/accelerator.h"
 #include "tools/app/film/film.h"
 #include "tools/app/result/summary.h"
+#include "tools/app/run/clock_offset.h"
 #include "tools/app/run/feed.h"
 #include "traces/datasets/dataset.h"
 #include "traces/trajectories/evaluation.h"
@@ -180,6 +181,10 @@ std::vector<StageResult> LiveSource::empty_stages() const {
 
 void LiveSource::describe(RunResult& result) const {
   result.notes = feed_.data().notes;
+  if (profile_.optimiser.joint)
+    if (const auto offset = find_clock_offset(feed_.data().imu, result.frames)) {
+      if (offset->is_certain()) result.notes.push_back(offset->text());
+    }
   if (result.camera) result.camera->fps = feed_.rate_hz();
   for (const auto& [name, arena] : {std::pair<const char*, const work::Arena&>{
                                         "last keyframe", odometry_->last_keyframe_memory()},
