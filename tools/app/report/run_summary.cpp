@@ -256,8 +256,9 @@ std::string run_summary(const std::string& heading, const RunResult& run, int wi
   else
     below = {frame_summary(run).substr(0, frame_summary(run).find('\n')), row_figures(run),
              native_line(run)};
+  for (std::size_t i = 0; i < run.notes.size(); ++i)
+    below.insert(below.begin() + 1 + static_cast<std::ptrdiff_t>(i), printable(run.notes[i]));
   for (std::string& line : trajectory_lines(run)) below.push_back(std::move(line));
-  for (const std::string& note : run.notes) below.push_back("data: " + printable(note));
   std::string end;
   for (std::string& line : below) {
     if (line.ends_with('\n')) line.pop_back();

@@ -73,7 +73,7 @@ struct RunSubject {
 };
 
 struct RunResult : RunSubject {
-  std::vector<std::string> notes{};  ///< what was mended of the data, a sentence each
+  std::vector<std::string> notes{};  ///< on data that were mended, and on idle cores; a line each
   bool timed = true;                 ///< false for --native: no cycles, no latencies
   int cores = 8;
   Hertz cluster_clock;

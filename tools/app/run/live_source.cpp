@@ -179,12 +179,24 @@ std::vector<StageResult> LiveSource::empty_stages() const {
   return named_stages(vio::stage_names(profile_));
 }
 
+/// Of what was mended of the data, and of cores that were left without work.
+std::vector<std::string> LiveSource::notes() const {
+  std::vector<std::string> notes;
+  for (const std::string& mended : feed_.data().notes) notes.push_back("data: " + mended);
+  const int batch = profile_.epnp.batch, cores = cluster_.cores();
+  if (cluster_.recording() && batch > 0 && batch < cores)
+    notes.push_back(
+        fmt::format("idle: {} of {} cores have no hypothesis of EPnP and of the 8-point algorithm, "
+                    "since workload.ransac_batch={}",
+                    cores - batch, cores, batch));
+  return notes;
+}
+
 void LiveSource::describe(RunResult& result) const {
-  result.notes = feed_.data().notes;
+  result.notes = notes();
   if (profile_.optimiser.joint)
-    if (const auto offset = find_clock_offset(feed_.data().imu, result.frames)) {
-      if (offset->is_certain()) result.notes.push_back(offset->text());
-    }
+    if (const auto offset = find_clock_offset(feed_.data().imu, result.frames))
+      if (offset->is_certain()) result.notes.push_back("data: " + offset->text());
   if (result.camera) result.camera->fps = feed_.rate_hz();
   for (const auto& [name, arena] : {std::pair<const char*, const work::Arena&>{
                                         "last keyframe", odometry_->last_keyframe_memory()},

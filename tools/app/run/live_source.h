@@ -33,6 +33,7 @@ class LiveSource : public RunSource {
 
  private:
   void evaluate(RunResult& result) const;
+  std::vector<std::string> notes() const;
 
   vio::Profile profile_;
   bool evaluate_;
