@@ -21,10 +21,11 @@ struct ExampleRow {
 
 Table example(const std::vector<ExampleRow>& rows) {
   return table_of(
-      Columns<ExampleRow>{{{.key = "name"}, [](const ExampleRow& r) { return r.name; }},
-                   {{.key = "value", .decimals = 2}, [](const ExampleRow& r) { return r.value; }},
-                   {{.title = "for people"}, [](const ExampleRow&) { return "seen"; }},
-                   {{.key = "count"}, [](const ExampleRow& r) { return r.count; }}},
+      Columns<ExampleRow>{
+          {{.key = "name"}, [](const ExampleRow& r) { return r.name; }},
+          {{.key = "value", .decimals = 2}, [](const ExampleRow& r) { return r.value; }},
+          {{.title = "for people"}, [](const ExampleRow&) { return "seen"; }},
+          {{.key = "count"}, [](const ExampleRow& r) { return r.count; }}},
       rows);
 }
 

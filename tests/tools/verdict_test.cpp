@@ -150,6 +150,26 @@ TEST(MapVerdict, AScaleThatIsOffEitherWay) {
   EXPECT_EQ(map_faults(with_scale(0.25)), (Texts{"the scale is 0.25"}));
 }
 
+/// As of an accelerometer with an axis the wrong way round.
+TEST(MapVerdict, AVerticalThatIsOff) {
+  MapSigns signs;
+  signs.truth = {.error_m = 0.01, .path_m = 5, .scale = 1, .tilt_deg = 9.9};
+  EXPECT_TRUE(map_verdict(signs).reasons.empty());
+  signs.truth.tilt_deg = 14.5;
+  EXPECT_EQ(map_verdict(signs).grade, Grade::doubtful);
+  EXPECT_EQ(map_verdict(signs).reasons, (Texts{"the vertical is off by 14.5°"}));
+}
+
+TEST(MapVerdict, SaysOfWhichFramesItIs) {
+  RunFigures run;
+  run.map.has_poses = true;
+  run.map.truth = {.error_m = 0.01, .path_m = 5, .scale = 1};
+  for (const auto& [name, value] : {std::pair{"camera.arrived", 300.0}, {"camera.dropped", 148.0}})
+    run.statistics.push_back({name, "1", "", value});
+  EXPECT_EQ(verdicts_of(run).list.back().text(),
+            "map good: of the 152 of 300 frames that were processed");
+}
+
 TEST(MapVerdict, APoseThatIsKeptForSeconds) {
   EXPECT_EQ(map_faults(with_kept(40)), Texts());  // 2 s after the last pose
   EXPECT_EQ(map_faults(with_kept(41)).size(), 1u);

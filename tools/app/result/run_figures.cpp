@@ -244,7 +244,8 @@ void complete(RunFigures& run, const std::vector<RecordedFrame>& frames) {
   const double left_out = poses ? run.value("frames.count").value_or(0) - *poses : 0;
   run.map = map_signs(frames,
                       {run.value("accuracy.ate.rmse"), run.value("accuracy.truth_length"),
-                       run.value("accuracy.size_ratio"), run.value("accuracy.ate.located")},
+                       run.value("accuracy.size_ratio"), run.value("accuracy.ate.located"),
+                       run.value("accuracy.tilt.rmse")},
                       std::max<std::int64_t>(0, std::llround(left_out)));
   run.map.has_poses = poses.has_value();
   if (run.map.own_path_m) {

@@ -67,10 +67,11 @@ struct RecordedFrame {
 
 /// Comparison of a run with the ground truth; empty without one.
 struct TruthSigns {
-  std::optional<double> error_m;    ///< RMSE of the positions
-  std::optional<double> path_m;     ///< length of the true path
-  std::optional<double> scale;      ///< size of the estimated path over that of the true one
-  std::optional<double> located_m;  ///< error_m without guesses, if there are any
+  std::optional<double> error_m{};    ///< RMSE of the positions
+  std::optional<double> path_m{};     ///< length of the true path
+  std::optional<double> scale{};      ///< size of the estimated path over that of the true one
+  std::optional<double> located_m{};  ///< error_m without guesses, if there are any
+  std::optional<double> tilt_deg{};   ///< RMSE of the vertical, attitudes best aligned
 };
 
 /// Frames, by their numbers.

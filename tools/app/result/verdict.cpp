@@ -228,6 +228,8 @@ void judge_by_truth(const TruthSigns& truth, const MapLimits& limits, const Faul
           is_short ? fmt::format("the error is {} m on a path of {} m", readable(error_m, 2),
                                  readable(*truth.path_m, 2))
                    : fmt::format("the error is {} % of the path", readable(100 * share, 1)));
+  if (truth.tilt_deg && !(*truth.tilt_deg < limits.tilt_deg))
+    fault(false, fmt::format("the vertical is off by {}°", readable(*truth.tilt_deg, 1)));
   if (!is_short && truth.scale && !(off(*truth.scale) < limits.scale))
     fault(!(off(*truth.scale) < limits.lost_scale),
           fmt::format("the scale is {}", readable(*truth.scale, 2)));
@@ -296,7 +298,13 @@ Verdicts verdicts_of(const RunFigures& run) {
   if (std::optional<RunVerdict> time = time_verdict(run)) all.list.push_back(std::move(*time));
   if (std::optional<RunVerdict> memory = memory_verdict(run))
     all.list.push_back(std::move(*memory));
-  if (run.map.has_poses) all.list.push_back(map_verdict(run.map));
+  if (!run.map.has_poses) return all;
+  RunVerdict& map = all.list.emplace_back(map_verdict(run.map));
+  const double arrived = run.value("camera.arrived").value_or(0);
+  const double dropped = run.value("camera.dropped").value_or(0);
+  if (dropped > 0)
+    map.reasons.push_back(fmt::format("of the {:.0f} of {:.0f} frames that were processed",
+                                      arrived - dropped, arrived));
   return all;
 }
 

@@ -44,6 +44,7 @@ struct MapLimits {
   double lost_error_share = 0.25;
   double scale = 1.25;  ///< size of the estimated path over the true one, or the inverse
   double lost_scale = 2;
+  double tilt_deg = 10;         ///< error of the vertical: nobody hovers by it
   double kept_s = 2;            ///< longest time without a new pose [s]
   double initialising_s = 5;    ///< longest initialisation [s]
   double restarts_per_s = 0.2;  ///< restarts of the map over time, if there are more than two [1/s]
