@@ -36,6 +36,7 @@ typename FixedInView<P>::Verdict FixedInView<P>::verdict_on(const Frame<P>& fram
 
 template <class P>
 void FixedInView<P>::take_evidence(const Frame<P>& frame) {
+  const typename P::Function function("take_evidence");
   const FixedPartOptions& limits = state_.profile.fixed;
   const Mat3<P> R = transpose(inertial_.motion_since_keyframe().R);
   I32 moved = 0;
@@ -59,6 +60,7 @@ template <class P>
 void FixedInView<P>::drop_from(Frame<P>& frame) {
   if (!state_.profile.use_imu) return;
   const auto stage = state_.machine.stage(stages::kGuided);
+  const typename P::Function function("drop_fixed");
   take_evidence(frame);
   if (fixed_ == I32(0)) return;
   drop_foreign(state_, frame, [&](int i) {

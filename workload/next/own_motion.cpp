@@ -141,6 +141,7 @@ void OwnMotion<P>::drop_from(Frame<P>& frame) {
   work::Arena& local = state_.machine.local();
   const work::Arena::Frame memory(local);
   const auto stage = state_.machine.stage(stages::kGuided);
+  const typename P::Function function("drop_own_motion");
   const auto moves = local.alloc<Flags>("matches that move by themselves", n);
   judge(flow_of(frame), frame, moves);
   judged_ = true;
