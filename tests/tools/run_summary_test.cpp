@@ -151,7 +151,7 @@ TEST(RunSummary, VerdictCountsFramesThatAreDroppedOrLate) {
   run.camera->deliveries[5].dropped = true;
   EXPECT_EQ(verdict(run),
             "verdict: fits on average: 3 of 8 frames dropped, a frame takes 29.5 ms on average of "
-            "50 ms, worst 50 ms, memory fits, map good");
+            "50 ms, worst 50 ms, memory fits, map good: of the 5 of 8 frames that were processed");
   EXPECT_EQ(verdict(RunResult()), "verdict: no frames");
 }
 

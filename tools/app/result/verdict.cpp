@@ -229,7 +229,7 @@ void judge_by_truth(const TruthSigns& truth, const MapLimits& limits, const Faul
                                  readable(*truth.path_m, 2))
                    : fmt::format("the error is {} % of the path", readable(100 * share, 1)));
   if (truth.tilt_deg && !(*truth.tilt_deg < limits.tilt_deg))
-    fault(false, fmt::format("the vertical is off by {}°", readable(*truth.tilt_deg, 2)));
+    fault(false, fmt::format("the vertical is off by {}°", readable(*truth.tilt_deg, 1)));
   if (!is_short && truth.scale && !(off(*truth.scale) < limits.scale))
     fault(!(off(*truth.scale) < limits.lost_scale),
           fmt::format("the scale is {}", readable(*truth.scale, 2)));
