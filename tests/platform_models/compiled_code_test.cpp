@@ -58,8 +58,7 @@ TEST(CompiledCode, RowsOfOthersAreCheckedWhenTheyAreAdded) {
   refused("rv32imfc", header + "harris_response,,1,1,0,1,1,1,1,1,1\n", "is there twice");
 }
 
-/// As measured of the same sources, which the rows that there are now hardly differ from. Those of
-/// ARM are older than those of RV32 (tools/rv32/RESULTS.md), whose code has grown since.
+/// As measured of the same sources, which the rows that there are now hardly differ from.
 TEST(CompiledCode, HasSizesByInstructionSet) {
   const work::CodeMap rv32 = code_map_named(kCompiledCode);
   for (std::size_t k = 0; k < work::kCompiledFor.size(); ++k) {
@@ -71,9 +70,7 @@ TEST(CompiledCode, HasSizesByInstructionSet) {
       bytes += table.pieces()[static_cast<std::size_t>(there)].bytes;
       bytes_rv32 += piece.bytes;
     }
-    const bool is_older = work::kCompiledFor[k] == "thumb2" || work::kCompiledFor[k] == "armv6";
-    EXPECT_NEAR(size_of_code(static_cast<work::CompiledFor>(k)) / (bytes / bytes_rv32), 1,
-                is_older ? 0.07 : 0.005)
+    EXPECT_NEAR(size_of_code(static_cast<work::CompiledFor>(k)) / (bytes / bytes_rv32), 1, 0.005)
         << work::kCompiledFor[k];
   }
   EXPECT_EQ(size_of_code(work::CompiledFor::Rv32imfc), 1);
