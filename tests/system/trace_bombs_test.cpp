@@ -188,7 +188,8 @@ TEST_F(TraceLimitsOfPrograms, WorkOfManyYearsIsRefused) {
 TEST_F(TraceLimitsOfPrograms, TransfersOfManyDaysAreTimed) {
   const std::uint64_t most = traces::kMostTransferred - 1;
   for (const std::uint64_t kind : {3, 4}) {
-    std::string steps = bytes({16'000}) + times(8'000, bytes({kind, 0, most}));
+    const std::string begun = kind == 4 ? bytes({kind, 0, most, 0}) : bytes({kind, 0, most});
+    std::string steps = bytes({16'000}) + times(8'000, begun);
     for (std::uint64_t k = 0; k < 8'000; ++k)
       steps += kind == 4 ? bytes({5, k}) : bytes({kind, 1, most});
     write("days.trace", trace_of_frame(gap9_parts(), kNoSeries, frame(list(1, stage(steps)))));
@@ -200,7 +201,7 @@ TEST_F(TraceLimitsOfPrograms, TransfersOfManyDaysAreTimed) {
 
 /// The simulation has a bounded number of processes, and a background transfer is one.
 TEST_F(TraceLimitsOfPrograms, BackgroundTransfersDoNotExhaustTheSimulation) {
-  std::string steps = bytes({140'000}) + times(70'000, bytes({4, 0, 1 << 20}));
+  std::string steps = bytes({140'000}) + times(70'000, bytes({4, 0, 1 << 20, 0}));
   for (std::uint64_t k = 0; k < 70'000; ++k) steps += bytes({5, k});
   write("many.trace", trace_of_frame(gap9_parts(), kNoSeries, frame(list(1, stage(steps)))));
   const auto replay = [&](const std::string& platform) {

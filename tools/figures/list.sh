@@ -24,7 +24,7 @@ cut 'sed -n "/^  *mean ms/,/^next/p" | grep -v -e "^next" -e "^    [^ ]"'
 
 figure missed-deadlines
 needs data
-shows 'COLUMNS=80 leviosim tune --data euroc/MH_01_easy_t05_t20 --clock 130,370 --fps 10 --seed 1,2,3,4,5,6,7,8,9,10 --out clocks'
+shows 'COLUMNS=80 leviosim tune --data euroc/MH_01_easy_t05_t20 --clock 130,370 --fps 10 --seed 1,2,3,4,5,6,7,8,9,10 --out tuned'
 cut 'lines "^frames/s" "^ *10 +[0-9]" | sed -E "s/  meets limits.*//"'
 
 figure sweep

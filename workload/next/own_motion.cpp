@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "sim/work/either.h"
 #include "workload/vio/parallax.h"
 #include "workload/vio/stages.h"
 
@@ -9,7 +10,7 @@ namespace leviosim::vio {
 /// How far the matches moved, the rotation undone; x and y of each, normalised.
 template <class P>
 struct OwnMotion<P>::Flow {
-  using Floats = typename P::template Span<F>;
+  using Floats = typename P::template EitherSpan<F>;
 
   /// The square of the distance of match i from where a translation along `t` may lead.
   F distance_sq(int i, const Vec3<P>& t) const {
@@ -43,11 +44,9 @@ OwnMotion<P>::OwnMotion(const FrontEndState<P>& state, const InertialPart<P>& in
 
 template <class P>
 typename OwnMotion<P>::Flow OwnMotion<P>::flow_of(const Frame<P>& frame) const {
-  using Floats = typename Flow::Floats;
-  work::Arena& local = state_.machine.local();
   const int n = frame.matches.list.count;
-  const Flow flow{local.alloc<Floats>("matches before", 2 * n),
-                  local.alloc<Floats>("motion of matches", 2 * n), n};
+  const Flow flow{work::alloc_either<P, F>(state_.machine, "matches before", 2 * n),
+                  work::alloc_either<P, F>(state_.machine, "motion of matches", 2 * n), n};
   const Mat3<P> R = transpose(inertial_.motion_since_keyframe().R);
   state_.machine.fork("motion of matches", [&](work::Core& core) {
     const auto [begin, end] = core.share(n);
@@ -99,7 +98,7 @@ Vec3<P> OwnMotion<P>::most_agreed(const Flow& flow) const {
 
 /// Marks the matches that move by themselves, and remembers the features of the frame that do.
 template <class P>
-void OwnMotion<P>::judge(const Flow& flow, const Frame<P>& frame, Flags moves) {
+void OwnMotion<P>::judge(const Flow& flow, const Frame<P>& frame, Marks moves) {
   work::Arena& local = state_.machine.local();
   const work::Arena::Frame memory(local);
   const OwnMotionOptions& options = state_.profile.own_motion;
@@ -138,11 +137,11 @@ template <class P>
 void OwnMotion<P>::drop_from(Frame<P>& frame) {
   const int n = frame.matches.list.count;
   if (!state_.profile.use_imu || n < state_.profile.min_frame_matches) return;
-  work::Arena& local = state_.machine.local();
-  const work::Arena::Frame memory(local);
+  const work::EitherFrame memory(state_.machine);
   const auto stage = state_.machine.stage(stages::kGuided);
   const typename P::Function function("drop_own_motion");
-  const auto moves = local.alloc<Flags>("matches that move by themselves", n);
+  const auto moves =
+      work::alloc_either<P, Byte>(state_.machine, "matches that move by themselves", n);
   judge(flow_of(frame), frame, moves);
   judged_ = true;
   drop_foreign(state_, frame, [&](int i) { return bool(I32(moves[i]) != I32(0)); });

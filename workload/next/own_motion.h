@@ -5,8 +5,8 @@
 // of the picture give such points, and the one that most matches agree with is kept. What disagrees
 // with it by pixels is not of the world.
 //
-// What moves by itself moves along those lines, too, at times. So where most matches of a cell of the
-// picture were seen to move by themselves, all of its features are held for such, for some
+// What moves by itself moves along those lines, too, at times. So where most matches of a cell of
+// the picture were seen to move by themselves, all of its features are held for such, for some
 // keyframes.
 //
 // Left out: the noise of the gyro; what never moves across the lines.
@@ -36,11 +36,12 @@ class OwnMotion {
   using Byte = typename P::Byte;
   using Bytes = typename P::template L2Span<Byte>;
   using Flags = typename P::template Span<Byte>;
+  using Marks = typename P::template EitherSpan<Byte>;
 
   struct Flow;
   Flow flow_of(const Frame<P>& frame) const;
   Vec3<P> most_agreed(const Flow& flow) const;
-  void judge(const Flow& flow, const Frame<P>& frame, Flags moves);
+  void judge(const Flow& flow, const Frame<P>& frame, Marks moves);
 
   const FrontEndState<P>& state_;
   const InertialPart<P>& inertial_;
