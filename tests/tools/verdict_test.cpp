@@ -168,6 +168,9 @@ TEST(MapVerdict, SaysOfWhichFramesItIs) {
     run.statistics.push_back({name, "1", "", value});
   EXPECT_EQ(verdicts_of(run).list.back().text(),
             "map good: of the 152 of 300 frames that were processed");
+  run.map.truth = {};
+  EXPECT_EQ(verdicts_of(run).list.back().text().find("processed"), std::string::npos)
+      << "not judged";
 }
 
 TEST(MapVerdict, APoseThatIsKeptForSeconds) {

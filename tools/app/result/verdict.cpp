@@ -302,7 +302,7 @@ Verdicts verdicts_of(const RunFigures& run) {
   RunVerdict& map = all.list.emplace_back(map_verdict(run.map));
   const double arrived = run.value("camera.arrived").value_or(0);
   const double dropped = run.value("camera.dropped").value_or(0);
-  if (dropped > 0)
+  if (dropped > 0 && map.grade != Grade::unknown)
     map.reasons.push_back(fmt::format("of the {:.0f} of {:.0f} frames that were processed",
                                       arrived - dropped, arrived));
   return all;
