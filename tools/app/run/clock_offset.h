@@ -22,7 +22,7 @@ struct ClockOffset {
   double seconds = 0;
   double deviation = 0;  ///< of it, by the scatter of the rotations [s]
 
-  /// Whether it is none of chance, and large enough to matter.
+  /// Whether it is more than chance, and large enough to matter.
   bool is_certain() const;
   /// "images follow the IMU by 45 ms: …".
   std::string text() const;
