@@ -51,6 +51,8 @@ check() { # check NAME COMMAND...: its output goes to a file, its end is shown w
   "$@" >"$log" 2>&1 || result=FAILED
   if [[ $result == FAILED ]]; then
     failed=1
+    # What failed, first: the end of a log of many tests is a list of their names.
+    grep -aE -m 20 -B 1 -A 6 ': Failure$|SUMMARY: |terminate called|not byte|differs' "$log" || true
     tail -n 40 "$log"
   fi
   summary+=("$(printf '%-16s %-6s %5d s  %s' "$name" "$result" $((SECONDS - started)) "$(counted "$log" "$result")")")

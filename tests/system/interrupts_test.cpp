@@ -28,6 +28,7 @@ struct Started {
   const char* what;
   std::vector<std::string> words;  ///< those in capitals stand for files
   int latest_ms;                   ///< of the signal
+  int undisturbed = 0;             ///< the exit status without one
 };
 
 const std::vector<Started>& commands() {
@@ -43,8 +44,9 @@ const std::vector<Started>& commands() {
       {"replay", {"replay", "TRACE", "--out", "OUT"}, 200},
       {"trace", {"trace", "check", "TRACE"}, 30},
       {"validate --fit", {"validate", "--fit", "--data", "FLIGHT"}, 2000},
-      {"sensitivity", {"sensitivity", "--data", "FLIGHT"}, 2000},
-      {"validate", {"validate", "--data", "FLIGHT", "--out", "OUT"}, 500},
+      {"sensitivity", {"sensitivity", "--data", "FLIGHT", "--frames", "0:60"}, 2000},
+      // Values of the paper that such a short flight misses.
+      {"validate", {"validate", "--data", "FLIGHT", "--out", "OUT"}, 500, 1},
       {"microbench", {"microbench"}, 100},
       {"feasibility", {"platforms", "feasibility", "--data", "FLIGHT"}, 1000},
       {"ablate", {"ablate", "--data", "FLIGHT", "--cache", "CACHE", "--out", "OUT"}, 500},
@@ -266,7 +268,7 @@ TEST_F(Interrupts, EndEveryCommandSoonAndLeaveNothingBehind) {
       fs::remove_all(folder_ / "work");
       fs::create_directory(folder_ / "work");
       // A process that had done all and was about to vanish takes no signal any more.
-      const bool was_over = stopped.status == 0 && stopped.seconds < 0.5;
+      const bool was_over = stopped.status == command.undisturbed && stopped.seconds < 0.5;
       if (!stopped.in_time || was_over) continue;
       ++stopped_at_work;
       longest = std::max(longest, stopped.work_s);
@@ -281,15 +283,19 @@ TEST_F(Interrupts, EndEveryCommandSoonAndLeaveNothingBehind) {
 }
 
 TEST_F(Interrupts, CountWhereTheCallerIgnoresThemAndWhateverTheWork) {
-  // Ignored, as shells start what runs in the background.
-  const auto before = std::signal(SIGINT, SIG_IGN);
-  Program program(folder_, {"validate", "--fit", "--data", path("FLIGHT")});
-  std::signal(SIGINT, before);
-  while (program.running() &&
-         base::read_text_file(folder_ / "stderr.txt").find("frame 12/60") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  program.send(SIGINT);
-  const ProgramResult result = program.wait();
+  ProgramResult result;
+  // Again where this process had to wait so long that the command was over.
+  for (int trial = 0; trial < 10 && result.status <= 0; ++trial) {
+    // Ignored, as shells start what runs in the background.
+    const auto before = std::signal(SIGINT, SIG_IGN);
+    Program program(folder_, {"validate", "--fit", "--data", path("FLIGHT")});
+    std::signal(SIGINT, before);
+    while (program.running() &&
+           base::read_text_file(folder_ / "stderr.txt").find("frame 12/60") == std::string::npos)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    program.send(SIGINT);
+    result = program.wait();
+  }
   EXPECT_EQ(result.status, 128 + SIGINT) << result.out << result.err;
   EXPECT_NE(result.err.find("the same command"), std::string::npos) << result.err;
 }
