@@ -80,7 +80,7 @@ class CodeFetcher {
     std::size_t operator()(const work::CodeReuse& code) const;
   };
   /// Kept at most; then all are forgotten.
-  static constexpr std::size_t kMostKnown = 1 << 14;
+  static constexpr std::size_t kMostKnown = 1 << 11;
 
   CodeFetch solve(const work::CodeReuse& code) const;
 

@@ -49,7 +49,7 @@ class CodeTracker {
  private:
   static constexpr std::int32_t kNone = -1;
   /// States kept at most; then all are forgotten but the present ones.
-  static constexpr std::size_t kMostStates = 1 << 14;
+  static constexpr std::size_t kMostStates = 1 << 12;
 
   struct Place {
     std::vector<std::uint32_t> order;    ///< pieces by index, the one visited last first

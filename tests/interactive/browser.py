@@ -27,6 +27,7 @@ class Page:
              "--no-first-run", "--disable-background-networking", "--remote-debugging-pipe",
              f"--user-data-dir={self.folder.name}", f"--window-size={width},{height}"],
             close_fds=False, preexec_fn=inherit, stdin=subprocess.DEVNULL,
+            env={**os.environ, "TMPDIR": self.folder.name},  # where it leaves folders behind
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(theirs_in)
         os.close(theirs_out)

@@ -224,11 +224,12 @@ class InBrowser : public Report {
     std::ofstream(path("frame.html")) << frames;
     // Browsers reserve more addresses than tools/mutate.sh grants the tests.
     const std::string command = fmt::format(
-        "ulimit -v unlimited; timeout 240 {} --headless=new --no-sandbox --disable-gpu "
+        "ulimit -v unlimited; mkdir -p '{1}'; TMPDIR='{1}' timeout 240 {0} --headless=new "
+        "--no-sandbox --disable-gpu "
         "--disable-dev-shm-usage "
-        "--no-first-run --disable-background-networking --user-data-dir='{}' "
-        "--blink-settings=preferredColorScheme={} --window-size=1400,1000 "
-        "--enable-logging=stderr --virtual-time-budget=5000 --dump-dom 'file://{}' >'{}' 2>'{}'",
+        "--no-first-run --disable-background-networking --user-data-dir='{1}' "
+        "--blink-settings=preferredColorScheme={2} --window-size=1400,1000 "
+        "--enable-logging=stderr --virtual-time-budget=5000 --dump-dom 'file://{3}' >'{4}' 2>'{5}'",
         kBrowser, path("profile"), dark ? 0 : 1, path("frame.html"), path("dom.html"),
         path("log.txt"));
     EXPECT_EQ(std::system(command.c_str()), 0);

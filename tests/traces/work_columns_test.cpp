@@ -25,14 +25,14 @@ struct Written {
   std::string columns;
 };
 
-Written written(const std::vector<work::Counts>& series) {
+Written written(const CountsSeries& series) {
   ByteWriter head;
   ByteWriter columns;
   write_series(series, head, columns);
   return {head.take(), columns.take()};
 }
 
-void expect_round_trip(const std::vector<work::Counts>& series) {
+void expect_round_trip(const CountsSeries& series) {
   const Written text = written(series);
   const std::string place = "test";
   ByteReader head(text.head, place);
@@ -50,11 +50,11 @@ void expect_round_trip(const std::vector<work::Counts>& series) {
 }
 
 /// A program of so many basic blocks, each of which counts some operations.
-std::vector<work::Counts> program(Rng& rng, std::size_t blocks, std::size_t segments) {
+CountsSeries program(Rng& rng, std::size_t blocks, std::size_t segments) {
   std::vector<work::Counts> block_counts(blocks);
   for (work::Counts& counts : block_counts)
     for (int i = 0; i < 6; ++i) counter(counts, rng.next() % kCounters) += rng.next() % 5;
-  std::vector<work::Counts> series(segments);
+  CountsSeries series(segments);
   for (work::Counts& counts : series)
     for (const work::Counts& block : block_counts)
       for (std::uint64_t visits = rng.next() % 40; visits > 0; --visits) counts += block;
@@ -70,7 +70,7 @@ TEST(WorkColumns, RandomProgramsComeBack) {
 TEST(WorkColumns, RandomCountsComeBack) {
   Rng rng(5);
   for (int trial = 0; trial < 50; ++trial) {
-    std::vector<work::Counts> series(1 + rng.next() % 40);
+    CountsSeries series(1 + rng.next() % 40);
     for (work::Counts& counts : series)
       for (std::size_t k = 0; k < kCounters; ++k)
         counter(counts, k) = rng.next() >> (64 - rng.next() % kCounterBits - 1);
@@ -80,7 +80,7 @@ TEST(WorkColumns, RandomCountsComeBack) {
 
 /// A dependence that holds in the beginning of a long series only is none.
 TEST(WorkColumns, LateSurprisesComeBack) {
-  std::vector<work::Counts> series(1000);
+  CountsSeries series(1000);
   for (std::size_t i = 0; i < series.size(); ++i) {
     series[i][Op::LoopIteration] = i % 17;
     series[i][Op::IntAlu] = 2 * (i % 17);
@@ -91,7 +91,7 @@ TEST(WorkColumns, LateSurprisesComeBack) {
 
 TEST(WorkColumns, SumsOfOtherCountersAreNotStored) {
   Rng rng(9);
-  std::vector<work::Counts> series(500);
+  CountsSeries series(500);
   for (work::Counts& counts : series) {
     const std::uint64_t a = rng.next() % 100;
     const std::uint64_t b = rng.next() % 100;
@@ -109,13 +109,13 @@ TEST(WorkColumns, SumsOfOtherCountersAreNotStored) {
 TEST(WorkColumns, EqualSegmentsTakeNoColumns) {
   work::Counts counts;
   counts[Op::F64Mul] = 12'345;
-  EXPECT_EQ(written(std::vector<work::Counts>(100, counts)).columns.size(), 0u);
-  expect_round_trip(std::vector<work::Counts>(100, counts));
+  EXPECT_EQ(written(CountsSeries(100, counts)).columns.size(), 0u);
+  expect_round_trip(CountsSeries(100, counts));
 }
 
 /// Counts that no recording has would overflow what is derived from them.
 TEST(WorkColumns, AbsurdCountsAreRefused) {
-  std::vector<work::Counts> series(2);
+  CountsSeries series(2);
   series[1][Op::IntAlu] = std::uint64_t{1} << kCounterBits;
   EXPECT_THROW(expect_round_trip(series), InputError);
   series[0][Op::IntAlu] = 5;

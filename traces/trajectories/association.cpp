@@ -24,6 +24,7 @@ Eigen::Isometry3d interpolate(const StampedPose& a, const StampedPose& b, std::i
 std::vector<MatchedPose> associate(const Trajectory& estimate, const Trajectory& truth,
                                    std::int64_t max_gap_ns) {
   std::vector<MatchedPose> matches;
+  matches.reserve(estimate.size());
   for (const StampedPose& pose : estimate) {
     const auto right = std::lower_bound(truth.begin(), truth.end(), pose.t_ns, earlier);
     if (right == truth.end()) continue;

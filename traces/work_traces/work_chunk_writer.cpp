@@ -109,7 +109,7 @@ void ChunkWriter::SeriesTable::write(ByteWriter& content) const {
   ByteWriter heads;
   ByteWriter columns;
   heads.whole(series.size());
-  for (const std::vector<work::Counts>& one : series) write_series(one, heads, columns);
+  for (const CountsSeries& one : series) write_series(one, heads, columns);
   content.text(heads.bytes());
   content.text(columns.bytes());
 }

@@ -49,7 +49,7 @@ class Dependences {
   explicit Dependences(std::size_t rows) : rows_(std::min(rows - 1, kSample)) {}
 
   /// The sum that the counter is, of counters that were kept before; else it is kept itself.
-  std::optional<std::vector<Term>> find(std::size_t k, std::span<const work::Counts> series) {
+  std::optional<std::vector<Term>> find(std::size_t k, const CountsSeries& series) {
     Vector rest(rows_);
     for (std::size_t r = 0; r < rows_; ++r)
       rest[r] = modulo(counter(series[r + 1], k) - counter(series[r], k));
@@ -86,7 +86,7 @@ class Dependences {
   }
 
   std::optional<std::vector<Term>> sum_of(const Vector& factors, std::size_t k,
-                                          std::span<const work::Counts> series) const {
+                                          const CountsSeries& series) const {
     std::vector<Term> terms;
     for (std::size_t i = 0; i < factors.size(); ++i) {
       if (factors[i] == 0) continue;
@@ -121,7 +121,7 @@ bool is_of_another_set(std::size_t counter, work::CompiledFor code) {
 /// Counters that change within the series, those that change least first: what counts visits of a
 /// basic block makes a better basis than sums over several. Those of instruction sets that are
 /// read less come last, so that nothing of the other is a sum of them.
-std::vector<std::size_t> changing(std::span<const work::Counts> series) {
+std::vector<std::size_t> changing(const CountsSeries& series) {
   std::array<std::uint64_t, kCounters> range{};
   std::vector<std::size_t> found;
   for (std::size_t k = 0; k < kCounters; ++k) {
@@ -141,7 +141,7 @@ std::vector<std::size_t> changing(std::span<const work::Counts> series) {
   return found;
 }
 
-ByteWriter differences(std::span<const work::Counts> series, std::size_t k) {
+ByteWriter differences(const CountsSeries& series, std::size_t k) {
   ByteWriter column;
   for (std::size_t r = 1; r < series.size(); ++r)
     column.integer(static_cast<std::int64_t>(counter(series[r], k) - counter(series[r - 1], k)));
@@ -150,7 +150,7 @@ ByteWriter differences(std::span<const work::Counts> series, std::size_t k) {
 
 }  // namespace
 
-void write_series(std::span<const work::Counts> series, ByteWriter& head, ByteWriter& columns) {
+void write_series(const CountsSeries& series, ByteWriter& head, ByteWriter& columns) {
   std::vector<std::size_t> first;
   for (std::size_t k = 0; k < kCounters; ++k)
     if (counter(series[0], k) > 0) first.push_back(k);

@@ -6,8 +6,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "sim/work/counts.h"
@@ -33,8 +33,11 @@ inline std::uint64_t counter(const work::Counts& counts, std::size_t k) {
 /// Which counter of this program each field of a file is.
 using FileFields = std::vector<std::size_t>;
 
+/// Segments of a series. Not in one block: it would be moved as it grows, and counts are large.
+using CountsSeries = std::deque<work::Counts>;
+
 /// Appends the description of a series to `head`, its differences to `columns`.
-void write_series(std::span<const work::Counts> series, ByteWriter& head, ByteWriter& columns);
+void write_series(const CountsSeries& series, ByteWriter& head, ByteWriter& columns);
 
 /// Gives the segments of a series back, one after the other.
 class SeriesReader {

@@ -46,7 +46,7 @@ class ChunkWriter {
   /// Segments of work by their place: some series.
   struct SeriesTable {
     std::map<Place, std::uint64_t> numbers;
-    std::vector<std::vector<work::Counts>> series;
+    std::vector<CountsSeries> series;
 
     std::uint64_t number_of(const Place& place);
     /// Their descriptions and columns.
