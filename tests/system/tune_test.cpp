@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/energy/supply.h"
 #include "tests/support/run_program.h"
@@ -9,6 +10,7 @@
 #include "tools/app/study/tune/tune_report.h"
 #include "tools/app/study/tune/tuning.h"
 #include "tools/app/table/table_files.h"
+#include "traces/datasets/rng.h"
 
 namespace leviosim::tools {
 namespace {
@@ -97,6 +99,7 @@ struct Example {
     plan.sequence.folder = "flights/my flight/";
     plan.fps = {10, 20};
     plan.variations = {{.name = "seed 1"}};
+    plan.screening = 1;
     plan.miss_rate = 0.05;
     plan.ate_m = 0.2;
     for (const std::int64_t mhz : {100, 200, 300})
@@ -216,6 +219,48 @@ TEST(Tuning, TheCommandOfSeveralSeedsIsALoopOverThem) {
   const std::string text = run_command_text(example.plan, example.points[1]);
   EXPECT_EQ(text.rfind("for seed in 2 7; do leviosim run ", 0), 0u) << text;
   EXPECT_NE(text.find(" --seed $seed --out chosen-$seed; done"), std::string::npos) << text;
+}
+
+TEST(Tuning, AClockThatOtherStartsMissGivesWayToTheNextOne) {
+  Example example;
+  example.plan.fps = {10};
+  example.points = {example.points[1], example.points[1], example.points[1]};
+  example.plan.request.platform = platform::resolve_platform("gap9");
+  for (std::size_t i = 0; i < 3; ++i)
+    example.points[i].setting =
+        setting_for(example.plan.request.platform.config, "gap9", example.plan.clocks[i].clock);
+  example.plan.perturbs = true;
+  example.plan.variations.resize(30);
+  std::vector<std::size_t> asked;
+  confirm(example.plan, example.points, [&](const std::vector<Point>& runs) {
+    asked.push_back(runs.size());
+    std::vector<RunOutcome> more(runs.size(), example.points[0].outcomes[0]);
+    for (std::size_t i = 0; i < 2 && asked.size() == 1; ++i) more[i].ate_m = 0.3;  // 2 of 30
+    return more;
+  });
+  EXPECT_EQ(asked, (std::vector<std::size_t>{29, 29}));
+  const std::vector<Choice> all = choices(example.plan, example.points);
+  EXPECT_EQ(all[0].lowest, &example.points[1]);
+  EXPECT_EQ(all[0].highest_failing, &example.points[0]);
+  EXPECT_EQ(example.points[2].outcomes.size(), 1u) << "what is not recommended needs no more runs";
+  EXPECT_NE(claim_text(example.plan, example.points[1]).find("30 of 30"), std::string::npos);
+}
+
+TEST(ShareHeld, IsNoMoreThanTheRunsTell) {
+  EXPECT_GE(share_held(59, 0), 0.95);
+  EXPECT_LT(share_held(58, 0), 0.95);
+  EXPECT_NEAR(share_held(13, 0), std::pow(0.05, 1.0 / 13), 1e-9);
+  EXPECT_NEAR(share_held(1000, 0), 1 - 3.0 / 1000, 1e-5) << "the rule of three";
+  EXPECT_EQ(share_held(3, 3), 0);
+  traces::Rng rng(1);
+  constexpr int kTrials = 4000;
+  int covered = 0;
+  for (int t = 0; t < kTrials; ++t) {
+    std::size_t failures = 0;
+    for (int i = 0; i < 40; ++i) failures += rng.uniform() < 0.1 ? 1 : 0;
+    covered += share_held(40, failures) <= 0.9;
+  }
+  EXPECT_GE(covered, 0.94 * kTrials) << "of runs of which a tenth fails";
 }
 
 TEST(RunOutcome, KeepsAllOfAClosedLoop) {

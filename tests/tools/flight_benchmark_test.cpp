@@ -199,6 +199,19 @@ TEST_F(FlightBenchmark, SaysWhetherRunsKnewThatTheyWereWrong) {
   EXPECT_EQ(result().rows[0].alarms.failed, 2u) << "what says nothing does not count";
 }
 
+TEST_F(FlightBenchmark, JudgesTheSameOfARunAsItsVerdict) {
+  for (RunOutcome& outcome : outcomes_) outcome.health = Health::good;
+  outcomes_[0].ate_m = 0.5;  // of 2 m: 25 % with poses that the run calls guesses
+  EXPECT_EQ(result().rows[0].alarms.silent, 1u);
+  outcomes_[0].located_m = 0.01;  // 0.5 % without
+  EXPECT_EQ(result().rows[0].alarms.silent, 0u);
+  EXPECT_EQ(result().rows[0].alarms.failed, 0u);
+  EXPECT_EQ(result().rows[0].failed, 1u) << "its poses are wrong all the same";
+  const Json run = rows_json(benchmark_runs_table(benchmark_, runs_, outcomes_, {})).at(0);
+  EXPECT_NEAR(run.at("ate_percent").get<double>(), 25, 1e-9);
+  EXPECT_NEAR(run.at("located_percent").get<double>(), 0.5, 1e-9);
+}
+
 TEST_F(FlightBenchmark, TellsTheSameInAllItsForms) {
   const BenchmarkResult all = result();
   const Table rows = benchmark_rows(benchmark_, all);

@@ -63,7 +63,7 @@ void LevioFrontEnd<P>::extract(Frame<P>& frame) {
 template <class P>
 void LevioFrontEnd<P>::locate(Frame<P>& frame, FrameReport& report) {
   const std::optional<Pose<P>> pose =
-      pose_from_landmarks(state_, inertial_, random_, frame, report);
+      pose_from_landmarks(state_, inertial_, random_, state_.profile.epnp, frame, report);
   alloc_keyframe_matches(state_, frame);
   const work::Arena::Frame descriptors(state_.machine.local());
   levio::match_keyframe(state_, frame);

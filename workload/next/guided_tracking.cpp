@@ -179,8 +179,10 @@ std::optional<Pose<P>> track_landmarks(const FrontEndState<P>& state,
   // Lost: look for all landmarks in all of the image, then again around where EPnP puts them, which
   // is no prediction.
   forget_landmarks<P>(frame);
+  levio::EpnpRansacOptions epnp = state.profile.epnp;
+  epnp.iterations = recovery.hypotheses;
   const std::optional<Pose<P>> recovered =
-      pose_from_landmarks<P>(state, inertial, random, frame, report);
+      pose_from_landmarks<P>(state, inertial, random, epnp, frame, report);
   if (!recovered || report.source != PoseSource::Epnp) return recovered;
   const LandmarkSearch around{near.radius_px, recovery.recovered_rotation,
                               recovery.recovered_position};

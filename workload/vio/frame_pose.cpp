@@ -111,7 +111,8 @@ LandmarkMatches<P> gather(const FrontEndState<P>& state, const Frame<P>& frame,
 template <class P>
 std::optional<Pose<P>> pose_from_landmarks(const FrontEndState<P>& state,
                                            const InertialPart<P>& inertial,
-                                           levio::ShiftRegister<P>& random, Frame<P>& frame,
+                                           levio::ShiftRegister<P>& random,
+                                           const levio::EpnpRansacOptions& epnp, Frame<P>& frame,
                                            FrameReport& report) {
   const Profile& profile = state.profile;
   const work::EitherFrame memory(state.machine);
@@ -129,7 +130,7 @@ std::optional<Pose<P>> pose_from_landmarks(const FrontEndState<P>& state,
 
   const auto stage = state.machine.stage(stages::kEpnp);
   const levio::EpnpResult<P> result = levio::estimate_pose_epnp<P>(
-      state.machine, matches, CameraConstants<P>(state.rig.camera), random, profile.epnp);
+      state.machine, matches, CameraConstants<P>(state.rig.camera), random, epnp);
   report.inliers = result.inliers;
   note_reprojections_on_host(state, frame, result.T_camera_world, report);
   const bool supported = result.ok && result.inliers >= profile.min_epnp_inliers;
@@ -137,10 +138,10 @@ std::optional<Pose<P>> pose_from_landmarks(const FrontEndState<P>& state,
   return supported ? inverse(result.T_camera_world) : inertial.predicted_pose();
 }
 
-#define LEVIOSIM_INSTANTIATE(P)                                                             \
-  template std::optional<Pose<P>> pose_from_landmarks(                                      \
-      const FrontEndState<P>&, const InertialPart<P>&, levio::ShiftRegister<P>&, Frame<P>&, \
-      FrameReport&);
+#define LEVIOSIM_INSTANTIATE(P)                                                  \
+  template std::optional<Pose<P>> pose_from_landmarks(                           \
+      const FrontEndState<P>&, const InertialPart<P>&, levio::ShiftRegister<P>&, \
+      const levio::EpnpRansacOptions&, Frame<P>&, FrameReport&);
 LEVIOSIM_INSTANTIATE(work::Native)
 LEVIOSIM_INSTANTIATE(work::Counting)
 #undef LEVIOSIM_INSTANTIATE

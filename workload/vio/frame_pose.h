@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "workload/levio/geometry/epnp_ransac.h"
 #include "workload/levio/geometry/sampling.h"
 #include "workload/vio/frame.h"
 #include "workload/vio/inertial_part.h"
@@ -14,11 +15,13 @@ namespace leviosim::vio {
 /// Marks the features that show a landmark, where there are enough matches for their ages to be
 /// looked at. Without enough inliers the pose is the predicted one, and report.source says so;
 /// without enough matches there is none.
+/// @param epnp  how many poses are tried, and how
 /// @return T_world_camera
 template <class P>
 std::optional<Pose<P>> pose_from_landmarks(const FrontEndState<P>& state,
                                            const InertialPart<P>& inertial,
-                                           levio::ShiftRegister<P>& random, Frame<P>& frame,
+                                           levio::ShiftRegister<P>& random,
+                                           const levio::EpnpRansacOptions& epnp, Frame<P>& frame,
                                            FrameReport& report);
 
 }  // namespace leviosim::vio

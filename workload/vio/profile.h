@@ -44,6 +44,9 @@ struct RecoveryOptions {
   float wide_radius_px = 24;
   float rotation = 0.1f;  ///< standard deviation of the second search's prior, each axis [rad]
   float position = 0.3f;  ///< the same of its position, each axis [m]
+  /// Poses that EPnP tries in a frame that is lost: a batch of the team's. More take longer than a
+  /// frame has time for; if none is right, the next frame tries others.
+  int hypotheses = 8;
   float recovered_rotation = 1;  ///< standard deviation of a pose found by EPnP, each axis [rad]
   float recovered_position = 1;  ///< the same of its position, each axis [m]
   float max_blind_time = 3;      ///< longest time for which the IMU alone moves the pose on [s]

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "sim/base/check.h"
 #include "sim/chip/accelerator.h"
@@ -185,6 +186,18 @@ std::size_t expected_poses(const RunResult& run) {
 std::string why_incomparable(const RunResult& run) {
   if (!run.not_comparable.empty() || run.poses_left_out == 0) return run.not_comparable;
   return fmt::format("{} poses are NaN", run.poses_left_out);
+}
+
+std::optional<traces::Trajectory> located_poses(const RunResult& run) {
+  constexpr std::size_t kFewest = 20;
+  std::set<std::int64_t> guessed_ns;
+  for (const FrameResult& frame : run.frames)
+    if (frame.pose_state() == vio::PoseState::Initialising) guessed_ns.insert(frame.t_ns);
+  traces::Trajectory poses = run.trajectory;
+  std::erase_if(poses,
+                [&](const traces::StampedPose& pose) { return guessed_ns.contains(pose.t_ns); });
+  if (poses.size() == run.trajectory.size() || poses.size() < kFewest) return std::nullopt;
+  return poses;
 }
 
 std::optional<double> Scenario::mean_latency_ns() const {

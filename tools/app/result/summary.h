@@ -30,6 +30,9 @@ double milliseconds(double cycles, Hertz clock);
 std::size_t expected_poses(const RunResult& run);
 /// Why the run has no error that could be compared with another's; empty if it may have one.
 std::string why_incomparable(const RunResult& run);
+/// The poses that are no guesses; nothing if all are, none is, or so few are that their alignment
+/// would fit them, whatever they are.
+std::optional<traces::Trajectory> located_poses(const RunResult& run);
 /// Least number of poses for an alignment.
 inline constexpr std::size_t kFewestPoses = 3;
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "platform_models/loader/compiled_code.h"
@@ -60,20 +59,6 @@ traces::StampedPose body_pose(const vio::CameraPose& report, const traces::Camer
   T_world_camera.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
   T_world_camera.translation() = p;
   return {t_ns, T_world_camera * camera.T_body_camera.inverse()};
-}
-
-/// Fewer poses are fitted by their alignment, whatever they are.
-constexpr std::size_t kFewestLocated = 20;
-
-/// Without those that are guesses.
-traces::Trajectory located_poses(const RunResult& run) {
-  std::set<std::int64_t> guessed_ns;
-  for (const FrameResult& frame : run.frames)
-    if (frame.pose_state() == vio::PoseState::Initialising) guessed_ns.insert(frame.t_ns);
-  traces::Trajectory poses = run.trajectory;
-  std::erase_if(poses,
-                [&](const traces::StampedPose& pose) { return guessed_ns.contains(pose.t_ns); });
-  return poses;
 }
 
 }  // namespace
@@ -216,9 +201,8 @@ void LiveSource::evaluate(RunResult& result) const {
     const traces::Trajectory& truth = feed_.truth();
     result.ate =
         traces::evaluate(result.trajectory, truth, {.expected_poses = expected_poses(result)});
-    const traces::Trajectory located = located_poses(result);
-    if (located.size() < result.trajectory.size() && located.size() >= kFewestLocated) {
-      const traces::Evaluation without_guesses = traces::evaluate(located, truth);
+    if (const std::optional<traces::Trajectory> located = located_poses(result)) {
+      const traces::Evaluation without_guesses = traces::evaluate(*located, truth);
       result.ate->located_rmse_m = without_guesses.translation.rmse;
       result.ate->size_ratio = without_guesses.size_ratio;
     }

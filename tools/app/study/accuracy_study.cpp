@@ -52,6 +52,7 @@ class Numbers {
 
   void all_of(RunOutcome& outcome) {
     take(kAte, outcome.ate_m);
+    take("located_m", outcome.located_m);
     take("relative_percent", outcome.relative_percent);
     take("sub_trajectories", outcome.sub_trajectories);
     take("frames", outcome.frames);
@@ -164,6 +165,9 @@ RunOutcome outcome_of(const RunResult& run, const traces::Trajectory& truth, con
   else
     outcome = measure(run.trajectory, truth, how, expected);
   outcome.frames = expected;
+  if (const std::optional<traces::Trajectory> located = located_poses(run);
+      located && outcome.ate_m)
+    outcome.located_m = measure(*located, truth, how).ate_m;
   for (const FrameResult& frame : run.frames)
     outcome.map_restarts += static_cast<std::size_t>(frame.map_restarts);
   if (!run.frames.empty()) outcome.health = static_cast<Health>(run.frames.back().health);
@@ -199,8 +203,9 @@ RunOutcome run_outcome_of(const RunRecord& record) {
 }
 
 std::string run_key(const Point& point, const Measure& how, const platform::Schema& schema) {
-  return point_key(fmt::format("errors, drift {} {}", name_of(how.alignment), how.length_m),
-                   identity_of(point, schema));
+  return point_key(
+      fmt::format("errors, drift, located {} {}", name_of(how.alignment), how.length_m),
+      identity_of(point, schema));
 }
 
 std::vector<std::vector<RunOutcome>> by_row(const std::vector<Point>& points,

@@ -34,8 +34,9 @@ struct LoopOutcome {
 using vio::Health;
 
 struct RunOutcome {
-  std::string failure;          ///< why there are no errors; empty if there are
-  std::optional<double> ate_m;  ///< RMSE
+  std::string failure;              ///< why there are no errors; empty if there are
+  std::optional<double> ate_m;      ///< RMSE
+  std::optional<double> located_m;  ///< the same without poses that are guesses, if some are
   std::optional<double>
       relative_percent;  ///< mean translation error; none if the path is too short
   std::size_t sub_trajectories = 0;

@@ -185,6 +185,7 @@ Table benchmark_runs_table(const Benchmark& benchmark, const std::vector<Point>&
       {{.key = "first_frame"}, of_piece([](P p) { return p.frames.begin; })},
       {figure("error (ATE) over the path", "ate_percent", "%"),
        [](R r) { return error_percent(r.outcome); }},
+      {{.key = "located_percent", .unit = "%"}, [](R r) { return judged_percent(r.outcome); }},
       {figure("scale", "scale_mean", "1"), [](R r) { return r.outcome.scale.mean; }},
       {figure("wander of the scale", "scale_sigma", "%", 100),
        [](R r) { return r.outcome.scale.sigma; }},

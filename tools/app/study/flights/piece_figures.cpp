@@ -117,6 +117,12 @@ std::optional<double> error_percent(const RunOutcome& outcome) {
   return 100 * *error / outcome.path_m;
 }
 
+std::optional<double> judged_percent(const RunOutcome& outcome) {
+  RunOutcome judged = outcome;
+  if (outcome.located_m) judged.ate_m = outcome.located_m;
+  return error_percent(judged);
+}
+
 bool failed(const RunOutcome& outcome) {
   const std::optional<double> error = error_percent(outcome);
   return !error || *error > kFailedPercent || outcome.health == Health::lost;
@@ -124,7 +130,7 @@ bool failed(const RunOutcome& outcome) {
 
 void Alarms::add(const RunOutcome& outcome) {
   if (!outcome.health) return;
-  const std::optional<double> error = error_percent(outcome);
+  const std::optional<double> error = judged_percent(outcome);
   // What does not watch its map is as silent as what takes it for good.
   const bool good = outcome.health == Health::good || outcome.health == Health::not_judged;
   const bool wrong = !error || *error > kFailedPercent;

@@ -17,6 +17,9 @@ namespace leviosim::tools {
 /// ATE over the length of the true path; none if the run diverged. [%]
 std::optional<double> error_percent(const RunOutcome& outcome);
 
+/// The same without poses that are guesses, which a run names apart: what its verdict is about.
+std::optional<double> judged_percent(const RunOutcome& outcome);
+
 /// Beyond it a run failed, whether it is lost or only wrong. [% of the path]
 inline constexpr double kFailedPercent = 10;
 /// Up to it a run is right. [%]
@@ -25,7 +28,7 @@ inline constexpr double kRightPercent = 3;
 inline constexpr double kSilentPercent = 20;
 
 /// What runs said of themselves at their end, against what they were. Runs that say nothing, for
-/// their front end has no "health", do not count.
+/// their front end has no "health", do not count; nor do poses that a run calls guesses.
 struct Alarms {
   std::size_t runs = 0;      ///< that say something
   std::size_t failed = 0;    ///< of these

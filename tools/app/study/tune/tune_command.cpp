@@ -52,11 +52,11 @@ struct ChosenRun {
   RunResult result;
 };
 
-/// Runs a point by itself with all variations, whatever the cache holds. @returns what the first
-/// gave
+/// Runs a point by itself with the variations for screening, whatever the cache holds. @returns
+/// what the first gave
 ChosenRun run_again(const TunePlan& plan, const TunePoint& point) {
   std::optional<ChosenRun> first;
-  for (std::size_t i = 0; i < plan.variations.size(); ++i) {
+  for (std::size_t i = 0; i < plan.screening; ++i) {
     RunRequest request = request_of(plan, point.fps, point.setting, plan.variations[i]);
     if (i == 0) request.time_bands = TimeBandsOf::team;  // as in the folder of a run
     RunResult result = simulate(request, [](const Progress&) { throw_if_interrupted(); });
@@ -88,16 +88,23 @@ std::string head_of(const TunePlan& plan, std::size_t loops) {
                      plan.request.cores, plan.sequence.frames, printable(plan.options.data), loops);
 }
 
+std::size_t loops_of(const std::vector<TunePoint>& points) {
+  std::size_t loops = 0;
+  for (const TunePoint& point : points) loops += point.outcomes.size();
+  return loops;
+}
+
 Answer answer(const TuneOptions& options, const RunnerOptions& runner,
               const Arguments& command_line) {
   const std::optional<Gate> gate = optional_gate(options.gate, {});
   const TunePlan plan = make_tune_plan(options, runner.progress);
   const std::vector<Point> runs = tune_runs(plan);
-  const std::vector<TunePoint> points =
-      tune_points(plan, runs, run_outcomes(runs, plan.measure, runner));
+  std::vector<TunePoint> points = tune_points(plan, runs, run_outcomes(runs, plan.measure, runner));
+  confirm(plan, points,
+          [&](const std::vector<Point>& more) { return run_outcomes(more, plan.measure, runner); });
   const std::vector<Choice> all = choices(plan, points);
   const TunePoint* best = chosen(all);
-  Answer answer{.parts = {head_of(plan, runs.size()) + tune_table(plan, points),
+  Answer answer{.parts = {head_of(plan, loops_of(points)) + tune_table(plan, points),
                           choice_text(plan, all), tune_notes(plan)},
                 .conclusion = tune_conclusion(all),
                 .rows = tune_rows(plan, points),
@@ -111,6 +118,7 @@ Answer answer(const TuneOptions& options, const RunnerOptions& runner,
     return answer;
   }
   const ChosenRun again = run_again(plan, *best);
+  answer.parts[1] += claim_text(plan, *best);
   answer.parts[1] += "run again by itself, it gave the same figures: confirmed\n";
   answer.next = {printable(run_command_text(plan, *best))};
   const Manifest manifest = manifest_of(plan, *best, again, command_line);

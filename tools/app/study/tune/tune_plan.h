@@ -59,8 +59,9 @@ struct TunePlan {
   double recorded_hz = 0;
   std::vector<ClockSetting> clocks;   ///< rising
   std::vector<double> fps;            ///< rising
-  std::vector<Variation> variations;  ///< of every point
-  bool perturbs = false;              ///< they are perturbations; else seeds
+  std::vector<Variation> variations;  ///< of a point that is recommended …
+  std::size_t screening = 0;  ///< … and how many of them, from the first on, of every point
+  bool perturbs = false;      ///< they are perturbations; else seeds
   Deadline deadline = Deadline::Drop;
   double miss_rate = 0;  ///< share of missed frames that is allowed
   double ate_m = 0;      ///< error that is allowed

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "tools/app/cli/host.h"
 #include "tools/app/html_report/study_page.h"
@@ -173,7 +174,7 @@ Columns<Run> run_columns(const TunePlan& plan) {
 std::vector<Run> runs_of(const TunePlan& plan, const std::vector<TunePoint>& points) {
   std::vector<Run> runs;
   for (const TunePoint& point : points)
-    for (std::size_t i = 0; i < plan.variations.size(); ++i)
+    for (std::size_t i = 0; i < point.outcomes.size(); ++i)
       runs.push_back({point, point.outcomes[i], plan.variations[i]});
   return runs;
 }
@@ -213,8 +214,9 @@ std::string tune_notes(const TunePlan& plan) {
       info_of(plan.deadline).description, name_of(plan.measure.alignment));
   if (plan.variations.size() > 1)
     text += fmt::format("medians over {}; failed: above the limit, or diverged; poses: the least\n",
-                        plan.perturbs ? fmt::format("{} perturbed runs (runs.csv names them)",
-                                                    plan.variations.size())
+                        plan.perturbs ? fmt::format("{} perturbed runs (runs.csv names them), "
+                                                    "{} of clocks that are recommended",
+                                                    plan.screening, plan.variations.size())
                                       : fmt::format("{} seeds", plan.variations.size()));
   return text;
 }
@@ -274,7 +276,9 @@ std::string tune_table(const TunePlan& plan, const std::vector<TunePoint>& point
                                           error_text(p.ate().high, 3));
                      }});
   if (plan.perturbs)
-    table.push_back({{"failed", kRight, 1}, [&](P p) { return p.failures(plan.ate_m); }});
+    table.push_back({{"failed", kRight, 1}, [&](P p) {
+                       return fmt::format("{} of {}", p.failures(plan.ate_m), p.outcomes.size());
+                     }});
   table.push_back({{"poses %", kRight, 2}, [](P p) { return percent(p.completion()); }});
   table.push_back({{"meets limits", kLeft}, [&](P p) { return is_enough(p, plan) ? "yes" : ""; }});
   std::vector<TunePoint> sorted = points;
@@ -297,6 +301,15 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
       100 * plan.miss_rate, plan.ate_m);
   for (const Choice& choice : choices) text += choice_line(choice);
   return text;
+}
+
+std::string claim_text(const TunePlan& plan, const TunePoint& best) {
+  if (!plan.perturbs) return {};
+  const std::size_t runs = best.outcomes.size(), failures = best.failures(plan.ate_m);
+  return fmt::format(
+      "it held in {} of {} perturbed runs: of other starts {:.0f} % or more do, with 95 % "
+      "confidence\n",
+      runs - failures, runs, std::floor(100 * share_held(runs, failures)));
 }
 
 std::string tune_conclusion(const std::vector<Choice>& choices) {

@@ -20,6 +20,10 @@ std::string choice_text(const TunePlan& plan, const std::vector<Choice>& choices
 /// That of all, in a sentence.
 std::string tune_conclusion(const std::vector<Choice>& choices);
 
+/// What the perturbed runs of the chosen point say of runs that were not tried, as a line; empty
+/// for seeds.
+std::string claim_text(const TunePlan& plan, const TunePoint& best);
+
 /// What stands below the table: what its figures are, with the protocol of the errors.
 std::string tune_notes(const TunePlan& plan);
 /// What choice_text() says, as members of a document: `lowest`, an array, and `chosen`.

@@ -23,6 +23,16 @@ std::vector<std::string> overrides_at(const TunePlan& plan, const ClockSetting& 
   return all;
 }
 
+Point run_of(const TunePlan& plan, double fps, const ClockSetting& setting,
+             const Variation& variation, std::size_t row) {
+  std::string work = plan.sequence.work;
+  if (plan.perturbs) work += fmt::format("\nperturbed: {}", variation.name);
+  return {.request = request_of(plan, fps, setting, variation),
+          .work = std::move(work),
+          .sequence = &plan.sequence,
+          .row = row};
+}
+
 }  // namespace
 
 double TunePoint::median(const std::function<double(const LoopOutcome&)>& of) const {
@@ -89,17 +99,46 @@ std::vector<Point> tune_runs(const TunePlan& plan) {
   std::size_t row = 0;
   for (const double fps : plan.fps)
     for (const ClockSetting& setting : plan.clocks) {
-      for (const Variation& variation : plan.variations) {
-        std::string work = plan.sequence.work;
-        if (plan.perturbs) work += fmt::format("\nperturbed: {}", variation.name);
-        runs.push_back({.request = request_of(plan, fps, setting, variation),
-                        .work = std::move(work),
-                        .sequence = &plan.sequence,
-                        .row = row});
-      }
+      for (std::size_t i = 0; i < plan.screening; ++i)
+        runs.push_back(run_of(plan, fps, setting, plan.variations[i], row));
       ++row;
     }
   return runs;
+}
+
+void confirm(const TunePlan& plan, std::vector<TunePoint>& points, const RunTunePoints& run) {
+  const auto unconfirmed = [&]() -> TunePoint* {
+    for (const Choice& choice : choices(plan, points))
+      if (choice.lowest != nullptr && choice.lowest->outcomes.size() < plan.variations.size())
+        return &points[static_cast<std::size_t>(choice.lowest - points.data())];
+    return nullptr;
+  };
+  while (TunePoint* const point = unconfirmed()) {
+    std::vector<Point> runs;
+    for (std::size_t i = point->outcomes.size(); i < plan.variations.size(); ++i)
+      runs.push_back(run_of(plan, point->fps, point->setting, plan.variations[i], 0));
+    const std::vector<RunOutcome> more = run(runs);
+    point->outcomes.insert(point->outcomes.end(), more.begin(), more.end());
+  }
+}
+
+double share_held(std::size_t runs, std::size_t failures) {
+  const auto seen_by_chance = [&](double fails) {  // so few failures, or fewer
+    double probability = std::pow(1 - fails, static_cast<double>(runs)), sum = probability;
+    for (std::size_t k = 1; k <= failures; ++k) {
+      probability *=
+          static_cast<double>(runs - k + 1) / static_cast<double>(k) * fails / (1 - fails);
+      sum += probability;
+    }
+    return sum;
+  };
+  if (failures >= runs) return 0;
+  double low = 0, high = 1;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (seen_by_chance(middle) > 0.05 ? low : high) = middle;
+  }
+  return 1 - low;
 }
 
 std::vector<TunePoint> tune_points(const TunePlan& plan, const std::vector<Point>& runs,

@@ -21,7 +21,7 @@ namespace leviosim::tools {
 struct TunePoint {
   double fps = 0;
   ClockSetting setting;
-  std::vector<RunOutcome> outcomes;  ///< by variation
+  std::vector<RunOutcome> outcomes;  ///< by variation; of those for screening, or of all
 
   /// Median over the variations of a figure of their loops.
   double median(const std::function<double(const LoopOutcome&)>& of) const;
@@ -42,7 +42,8 @@ struct TunePoint {
 RunRequest request_of(const TunePlan& plan, double fps, const ClockSetting& setting,
                       const Variation& variation);
 
-/// By frame rate, clock, then variation; the sequence of the plan must outlive them.
+/// By frame rate, clock, then variation, those for screening; the sequence of the plan must outlive
+/// them.
 std::vector<Point> tune_runs(const TunePlan& plan);
 
 /// @param runs  tune_runs()
@@ -67,6 +68,15 @@ std::vector<Choice> choices(const TunePlan& plan, const std::vector<TunePoint>& 
 /// The lowest of these clocks; of equal clocks, that of the higher frame rate. nullptr if none is
 /// enough.
 const TunePoint* chosen(const std::vector<Choice>& choices);
+
+using RunTunePoints = std::function<std::vector<RunOutcome>(const std::vector<Point>&)>;
+/// Adds the other variations to the lowest clocks that are enough, and, where one then is not, to
+/// the next higher ones. @param run  what runs them
+void confirm(const TunePlan& plan, std::vector<TunePoint>& points, const RunTunePoints& run);
+
+/// Of which share of all runs it can be said, with 95 % confidence, that they do not fail, where so
+/// many were drawn: nearly 1 - 3 / runs, if none of them failed.
+double share_held(std::size_t runs, std::size_t failures);
 
 /// A line for a shell that runs a point by itself: unperturbed, or with each seed into a folder of
 /// its own: chosen, or chosen-1, chosen-2, … if there are several.
