@@ -1,5 +1,7 @@
 #include "workload/next/next_front_end.h"
 
+#include <utility>
+
 #include "workload/next/feature_alignment.h"
 #include "workload/next/guided_tracking.h"
 #include "workload/next/motion_record.h"
@@ -42,6 +44,7 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   if (repeats_last(frame) && !inertial_.rest()) frame.features.list.count = 0;
   report.keyframe = true;
   still_ = rests_ = false;
+  if (std::exchange(waited_, false) && !initialises()) prediction_.follow_alignment();
   correct_path(input.dt, report);
   path_.take_motion(input.dt);
   if (state_.started) look_for_motion(frame);
@@ -76,7 +79,8 @@ FrameReport NextFrontEnd<P>::process(const FrameInput& input) {
   if (initialises())
     if (const std::optional<Vec3<P>> held = held_position()) frame.T_world_camera.t = *held;
   complete<P>(state_, frame, report);
-  if (initialises()) report.state = static_cast<int>(PoseState::Initialising);
+  waited_ = initialises();
+  if (waited_) report.state = static_cast<int>(PoseState::Initialising);
   if (inertial_.rest() || images_rest()) report.at_rest = 1;
   rested_ = report.source == PoseSource::First;
   if (loop_) loop_->correct(frame, frame.dt, report);

@@ -71,6 +71,7 @@ class NextFrontEnd : public FrontEnd<P> {
   OwnMotion<P> own_motion_;
   InitialPath<P> path_;  ///< frames before the end of the alignment
   float settling_ = 0;   ///< time since its alignment, s
+  bool waited_ = false;  ///< the map was not aligned at the frame before
   typename P::U32 sum_;  ///< over the features of the frame before
   bool still_ = false;   ///< the images say that the camera has not moved since the keyframe
   bool rests_ = false;   ///< … and has not turned either

@@ -42,6 +42,13 @@ Pose<P> Prediction<P>::by_motion(const TrackedFrame<P>& frame) const {
 }
 
 template <class P>
+void Prediction<P>::follow_alignment() {
+  const auto stage = state_.machine.stage(stages::kGuided);
+  motion_.store(motion_.T_keyframe_camera(), motion_.velocity(), motion_.gyro_rotation(),
+                last_pose());
+}
+
+template <class P>
 void Prediction<P>::remember(const TrackedFrame<P>& frame, const FrameReport& report) {
   using F = typename P::F32;
   const auto stage = state_.machine.stage(stages::kGuided);

@@ -33,6 +33,9 @@ class Prediction {
     return imu_predicts() ? inertial_.predicted_pose() : by_motion(frame);
   }
 
+  /// The map has been aligned, which moves it by metres: what was reported before is no measure of
+  /// where the camera can be now. The last frame counts as reported where the map has it.
+  void follow_alignment();
   /// Leaves the motion over this frame for the next one.
   void remember(const TrackedFrame<P>& frame, const FrameReport& report);
 

@@ -1,10 +1,13 @@
-// A frame that finds no landmark where they should be: how much it tries to find its place.
+// A frame that finds no landmark where they should be: how much it tries to find its place. And a
+// map that its alignment has moved.
 #include <gtest/gtest.h>
 
 #include "sim/work/machine.h"
 #include "tests/workload/test_camera.h"
 #include "tests/workload/vision/runs.h"
 #include "workload/next/guided_tracking.h"
+#include "workload/next/plausibility.h"
+#include "workload/next/prediction.h"
 #include "workload/vio/inertial_part.h"
 #include "workload/vio/map_start.h"
 #include "workload/vio/stages.h"
@@ -93,6 +96,24 @@ TEST(LostFrame, TriesAsManyPosesAsAFrameHasTimeFor) {
   EXPECT_EQ(lost.track().source, PoseSource::Tracked);
   EXPECT_EQ(lost.tried(), lost.profile.recovery.hypotheses);
   EXPECT_LT(lost.profile.recovery.hypotheses, lost.profile.epnp.iterations);
+}
+
+/// It moves the map by metres, which at any other time would be a map that is given up.
+TEST(AlignedMap, IsNotJudgedByWhereTheCameraWasReportedBefore) {
+  LostFrame scene(profile_named("next", 1));
+  MapStatus map;
+  Prediction<P> prediction(scene.state, scene.inertial, map, scene.memory);
+  prediction.remember({}, {});
+  const auto is_plausible = [&] { return map_is_plausible(scene.state, prediction, true); };
+  EXPECT_TRUE(is_plausible());
+  const auto slot = scene.graph.newest_keyframe();
+  KeyframeState<P> aligned = scene.graph.keyframe(slot);
+  aligned.T_world_camera.t.x = 5.0f;
+  scene.graph.set_keyframe(slot, aligned);
+  EXPECT_FALSE(is_plausible());
+  map.aligned = true;
+  prediction.follow_alignment();
+  EXPECT_TRUE(is_plausible());
 }
 
 }  // namespace
