@@ -189,14 +189,14 @@ std::string why_incomparable(const RunResult& run) {
 }
 
 std::optional<traces::Trajectory> located_poses(const RunResult& run) {
-  constexpr std::size_t kFewest = 20;
+  constexpr std::size_t kFewestLocated = 20;
   std::set<std::int64_t> guessed_ns;
   for (const FrameResult& frame : run.frames)
     if (frame.pose_state() == vio::PoseState::Initialising) guessed_ns.insert(frame.t_ns);
   traces::Trajectory poses = run.trajectory;
   std::erase_if(poses,
                 [&](const traces::StampedPose& pose) { return guessed_ns.contains(pose.t_ns); });
-  if (poses.size() == run.trajectory.size() || poses.size() < kFewest) return std::nullopt;
+  if (poses.size() == run.trajectory.size() || poses.size() < kFewestLocated) return std::nullopt;
   return poses;
 }
 
