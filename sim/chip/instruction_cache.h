@@ -79,7 +79,7 @@ class CodeFetcher {
   struct HashOfReuse {
     std::size_t operator()(const work::CodeReuse& code) const;
   };
-  /// Kept at most; then all are forgotten.
+  /// Kept at most; then all are forgotten, for long flights go on giving new ones.
   static constexpr std::size_t kMostKnown = 1 << 11;
 
   CodeFetch solve(const work::CodeReuse& code) const;

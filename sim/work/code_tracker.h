@@ -48,7 +48,7 @@ class CodeTracker {
 
  private:
   static constexpr std::int32_t kNone = -1;
-  /// States kept at most; then all are forgotten but the present ones.
+  /// Kept at most, of a flight of any length; then all are forgotten but the present ones.
   static constexpr std::size_t kMostStates = 1 << 12;
 
   struct Place {
